@@ -1,0 +1,225 @@
+#include <cmath>
+#include <fmt/format.h>
+#include <memory>
+
+#include "verbs.h"
+
+#include "zwidth/description/problem.h"
+
+/// `zwidth devices` and `zwidth parts`: what comes with zwidth.
+
+namespace zwidth {
+
+namespace {
+
+int devices(bool json, const Terminal& terminal) {
+  Json list = Json::array();
+  Sheet sheet(terminal);
+  std::vector<std::vector<std::string>> rows;
+  for (const BuiltinDevice& device : catalogue().devices()) {
+    Json entry;
+    entry["name"] = device.name;
+    entry["title"] = device.title;
+    entry["path"] = device.path.string();
+    list.push_back(entry);
+    rows.push_back({device.name, device.title});
+  }
+  if (json) {
+    Json document;
+    document["devices"] = list;
+    print_json(document);
+    return kDone;
+  }
+  sheet.title("Built-in devices", fmt::format("in {}", (catalogue().directory() / "devices").string()));
+  sheet.table({"name", "title"}, rows, false);
+  sheet.gap();
+  sheet.paragraph(
+      "`zwidth report NAME` prints a data sheet, `zwidth show NAME > mine.toml` starts a device of your own.",
+      2, Tint::dim);
+  print(sheet.text());
+  return kDone;
+}
+
+struct PartsArguments {
+  std::string kind;
+  std::string name;
+  bool json = false;
+};
+
+/// A figure that tells parts of a kind apart at a glance.
+struct Column {
+  std::string title;
+  std::string key;
+  double factor;
+};
+
+template <class Part>
+std::vector<Column> overview();
+template <>
+std::vector<Column> overview<Motor>() {
+  return {{"mN m", "nominal_torque", 1e3},
+          {"A", "nominal_current", 1.0},
+          {"mN m/A", "torque_constant", 1e3},
+          {"g cm²", "rotor_inertia", 1e7}};
+}
+template <>
+std::vector<Column> overview<Encoder>() {
+  return {{"pulses/turn", "pulses_per_turn", 1.0}, {"kHz", "max_frequency", 1e-3}};
+}
+template <>
+std::vector<Column> overview<Amplifier>() {
+  return {
+      {"A", "continuous_current", 1.0}, {"A peak", "max_current", 1.0}, {"V max", "max_supply_voltage", 1.0}};
+}
+template <>
+std::vector<Column> overview<Cable>() {
+  return {{"mm coated", "coated_diameter", 1e3},
+          {"N working", "max_working_load", 1.0},
+          {"N breaking", "breaking_load", 1.0}};
+}
+template <>
+std::vector<Column> overview<Bearing>() {
+  return {{"mm bore", "bore", 1e3},
+          {"mm outer", "outer_diameter", 1e3},
+          {"N static", "static_load", 1.0},
+          {"N dynamic", "dynamic_load", 1.0}};
+}
+template <>
+std::vector<Column> overview<Material>() {
+  return {{"GPa", "elastic_modulus", 1e-9}, {"kg/m³", "density", 1.0}, {"MPa yield", "yield_strength", 1e-6}};
+}
+
+class Parts {
+ public:
+  Parts(const PartsArguments& arguments, const Terminal& terminal) : arguments_(arguments), sheet_(terminal) {}
+
+  int run() {
+    const std::vector<std::string> kinds = {"motor", "encoder", "amplifier", "cable", "bearing", "material"};
+    std::string kind = arguments_.kind;
+    if (kind.ends_with('s')) kind.pop_back();
+    if (!kind.empty() && std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
+      // A part's name alone says its kind too.
+      if (!arguments_.name.empty())
+        throw InputError(
+            fmt::format("there is no kind of part called \"{}\"; {}", arguments_.kind, suggest(kind, kinds)));
+      name_ = arguments_.kind;
+    } else {
+      kind_ = kind;
+      name_ = arguments_.name;
+    }
+    each<Motor>();
+    each<Encoder>();
+    each<Amplifier>();
+    each<Cable>();
+    each<Bearing>();
+    each<Material>();
+    if (!name_.empty() && found_ == 0) {
+      std::vector<std::string> known = known_names_;
+      if (kind_.empty()) known.insert(known.end(), kinds.begin(), kinds.end());
+      throw InputError(fmt::format("there is no {} called \"{}\"; {}", kind_.empty() ? "part" : kind_, name_,
+                                   suggest(name_, known)));
+    }
+    if (arguments_.json) {
+      Json document;
+      document["parts"] = list_;
+      print_json(document);
+    } else {
+      print(sheet_.text());
+    }
+    return kDone;
+  }
+
+ private:
+  template <class Part>
+  void each() {
+    const std::string kind(part_kind<Part>());
+    if (!kind_.empty() && kind != kind_) return;
+    const auto columns_of_kind = overview<Part>();
+    std::vector<std::vector<std::string>> rows;
+    for (const Part& part : catalogue().all<Part>()) {
+      known_names_.push_back(part.info.name);
+      if (!name_.empty() && part.info.name != name_) continue;
+      ++found_;
+      const auto values = part_values(part);
+      Json entry;
+      entry["kind"] = kind;
+      entry["name"] = part.info.name;
+      entry["title"] = part.info.title;
+      entry["source"] = part.info.source;
+      Json numbers;
+      for (const PartValue& value : values) {
+        Json number_entry;
+        number_entry["value"] = json_number(value.value);
+        number_entry["unit"] = si_unit(value.dimension);
+        number_entry["source"] = value.source;
+        if (!std::isfinite(value.value)) number_entry["note"] = "not given by the source";
+        numbers[value.key] = number_entry;
+      }
+      entry["values"] = numbers;
+      list_.push_back(entry);
+      if (!name_.empty()) one(kind, part.info, values);
+      std::vector<std::string> row{part.info.name};
+      for (const Column& column : columns_of_kind) {
+        for (const PartValue& value : values) {
+          if (value.key == column.key)
+            row.push_back(given(value.value) ? trimmed(value.value * column.factor) : "–");
+        }
+      }
+      rows.push_back(row);
+    }
+    if (!name_.empty()) return;
+    sheet_.heading(kind + (kind.ends_with('y') ? "" : "s"));
+    std::vector<std::string> head{"name"};
+    for (const Column& column : columns_of_kind) head.push_back(column.title);
+    sheet_.table(head, rows);
+  }
+
+  void one(const std::string& kind, const PartInfo& info, const std::vector<PartValue>& values) {
+    sheet_.title(info.name, kind);
+    sheet_.paragraph(info.title);
+    sheet_.paragraph("source: " + info.source, 2, Tint::dim);
+    sheet_.gap();
+    for (const PartValue& value : values) {
+      const std::string text = given(value.value) ? format_quantity(value.value, value.dimension) : "not given";
+      std::string note = value.meaning;
+      if (value.source != info.source) note += " (" + value.source + ")";
+      sheet_.row(value.key, text, note);
+    }
+  }
+
+  const PartsArguments& arguments_;
+  Sheet sheet_;
+  std::string kind_;
+  std::string name_;
+  std::vector<std::string> known_names_;
+  Json list_ = Json::array();
+  int found_ = 0;
+};
+
+}  // namespace
+
+void add_devices(CLI::App& app, Context& context) {
+  CLI::App* verb =
+      add_verb(app, "devices", "List the built-in devices", "  zwidth devices\n  zwidth devices --json");
+  auto json = std::make_shared<bool>(false);
+  add_json_flag(*verb, *json);
+  verb->callback(
+      [json, &context] { context.run = [json, &context] { return devices(*json, context.terminal); }; });
+}
+
+void add_parts(CLI::App& app, Context& context) {
+  CLI::App* verb = add_verb(app, "parts", "List the part catalogue, or everything about one part",
+                            "  zwidth parts                             every kind\n"
+                            "  zwidth parts motor                       the motors\n"
+                            "  zwidth parts maxon-epos2-50-5            one part, each value with its source");
+  auto arguments = std::make_shared<PartsArguments>();
+  verb->add_option("KIND", arguments->kind,
+                   "motor, encoder, amplifier, cable, bearing or material; or a part's name");
+  verb->add_option("NAME", arguments->name, "name of the part");
+  add_json_flag(*verb, arguments->json);
+  verb->callback([arguments, &context] {
+    context.run = [arguments, &context] { return Parts(*arguments, context.terminal).run(); };
+  });
+}
+
+}  // namespace zwidth

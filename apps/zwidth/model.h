@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "zwidth/actuation/drive.h"
+#include "zwidth/description/description.h"
+#include "zwidth/mechanism/mechanism.h"
+#include "zwidth/mechanism/posture.h"
+
+namespace zwidth {
+
+/// A device ready to be asked: its mechanism, with the drives' inertia on the joints, and its drives.
+struct Model {
+  /// Throws InvalidDrive when a drive's numbers contradict each other.
+  explicit Model(const Description& description);
+
+  Description description;
+  Mechanism mechanism;
+  std::vector<std::optional<Drive>> drives;  ///< of each active joint; empty where the file gives none
+
+  /// Every active joint has a drive.
+  bool driven() const;
+
+  // One value per active joint; NaN for a joint without a drive.
+  ActiveVector continuous_torque() const;  ///< [N m]
+  ActiveVector peak_torque() const;        ///< [N m]
+  ActiveVector torque_step() const;        ///< [N m]
+  ActiveVector joint_step() const;         ///< [rad]
+};
+
+/// The reachable tool position nearest to another.
+struct NearestPoint {
+  Vector3 position = Vector3::Zero();  ///< [m], base frame
+  ActiveVector joints;                 ///< [rad] or [m]
+  double distance = 0.0;               ///< [m]
+};
+
+/// Searches the joint ranges from a raster of starts. Empty where no start closes the loops.
+std::optional<NearestPoint> nearest_reachable(const Mechanism& mechanism, const Vector3& position);
+
+}  // namespace zwidth

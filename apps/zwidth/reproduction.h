@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "zwidth/description/catalogue.h"
+
+/// Published figures beside computed ones.
+
+namespace zwidth {
+
+/// The unit in which a source prints a figure.
+struct PrintedUnit {
+  std::string name;     ///< "mm"
+  std::string si_name;  ///< "m"
+  double factor = 1.0;  ///< SI value of one of it
+};
+
+/// What another reading of the source gives for the same figure.
+struct OtherReading {
+  std::string label;   ///< "as it is", "with the printed k1"
+  double value = 0.0;  ///< [SI]
+  std::string how;     ///< in words
+};
+
+/// A published figure and what comes out of the device file.
+struct ReproducedFigure {
+  std::string id;      ///< stable: "delta.T4.8.d5"
+  std::string source;  ///< heading it stands under: "Table 4.8 - capstan drive"
+  std::string what;    ///< in words, with the source's symbol
+  PrintedUnit unit;
+  int decimals = 0;       ///< printed
+  double printed = 0.0;   ///< [SI]
+  double computed = 0.0;  ///< as the source computed it [SI]
+  double tolerance =
+      0.0;  ///< half a unit of the last printed digit, or wider where the source says "approximately" [SI]
+  std::string reading;  ///< how the source must have computed it, where that is not what it says; else empty
+  std::optional<OtherReading> other;
+
+  double difference() const { return computed - printed; }
+  bool ok() const;  ///< within the tolerance; a figure that is not a number is not
+};
+
+/// Something that a source states and that does not come out, or is printed wrongly.
+struct Erratum {
+  std::string where;    ///< "Table 4.10"
+  std::string printed;  ///< what it says
+  std::string right;    ///< what is right, with our number where there is one
+  std::string reason;   ///< how that is known
+};
+
+struct Reproduction {
+  std::string device;
+  std::string source;
+  std::vector<ReproducedFigure> figures;   ///< in the source's order
+  std::vector<Erratum> not_reproduced;     ///< numbers that the source's own data do not give
+  std::vector<Erratum> errata;             ///< misprints and slips, already corrected in the figures above
+  std::vector<std::string> measured_only;  ///< what only a bench can tell
+};
+
+/// Neal 2015.
+Reproduction reproduce_delta(const Catalogue& catalogue);
+
+}  // namespace zwidth

@@ -1,0 +1,538 @@
+#include "sheet_html.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <functional>
+#include <set>
+
+#include "figure.h"
+#include "sheet_text.h"
+#include "terminal.h"
+
+#include "zwidth/description/catalogue.h"
+#include "zwidth/description/units.h"
+#include "zwidth/description/values.h"
+
+namespace zwidth {
+
+namespace {
+
+constexpr std::string_view kStyle = R"css(
+:root{color-scheme:light dark;--text:#1c2430;--muted:#5b6675;--grid:#e7eaef;--axis:#9aa4b2;--card:#fff;--page:#f5f6f8;--line:#dfe3e9;
+--s1:#2563c9;--s2:#d9631e;--s3:#23906b;--s4:#8b4fc6;--bad:#c9302c;--good:#23906b;--note:#fff6e0;--noteline:#e6b84c}
+@media (prefers-color-scheme:dark){:root{--text:#e6e9ee;--muted:#9aa5b4;--grid:#2b323c;--axis:#616c7b;--card:#1b2027;--page:#13171c;--line:#2c343e;
+--s1:#6ea2f5;--s2:#f08b4d;--s3:#4fc29a;--s4:#b48cf0;--bad:#f0706b;--good:#4fc29a;--note:#2d2615;--noteline:#8a6d23}}
+*{box-sizing:border-box}
+html{scroll-behavior:smooth;-webkit-text-size-adjust:100%}
+body{margin:0;background:var(--page);color:var(--text);font:16px/1.55 system-ui,-apple-system,"Segoe UI",Roboto,"Helvetica Neue","DejaVu Sans",Arial,sans-serif}
+.page{max-width:1240px;margin:0 auto;padding:28px 24px 64px;display:grid;grid-template-columns:minmax(0,1fr);gap:0 40px}
+@media (min-width:1100px){.page{grid-template-columns:188px minmax(0,1fr)}nav{position:sticky;top:28px;align-self:start}}
+nav{font-size:14px;margin-bottom:20px}
+nav b{display:block;font-size:12px;letter-spacing:.06em;text-transform:uppercase;color:var(--muted);margin-bottom:6px}
+nav ol{list-style:none;margin:0;padding:0;display:flex;flex-wrap:wrap;gap:2px 18px}
+@media (min-width:1100px){nav ol{display:block}nav li{margin:5px 0}}
+a{color:var(--s1);text-decoration:none}a:hover{text-decoration:underline}
+header{grid-column:1/-1;border-bottom:1px solid var(--line);padding-bottom:18px;margin-bottom:24px}
+h1{font-size:clamp(26px,4.5vw,36px);line-height:1.2;margin:0 0 6px;letter-spacing:-.01em}
+header p{margin:2px 0;color:var(--muted)}
+h2{font-size:22px;margin:44px 0 12px;line-height:1.25;letter-spacing:-.005em;scroll-margin-top:16px}
+section:first-of-type h2{margin-top:0}
+h3{font-size:16px;margin:24px 0 8px}
+p{margin:8px 0;max-width:74ch}
+.how{color:var(--muted);font-size:14px}
+.card{background:var(--card);border:1px solid var(--line);border-radius:10px;padding:14px 16px;margin:0}
+figure.card{break-inside:avoid;display:flex;flex-direction:column}
+figure.card svg{margin:4px 0}
+figcaption{font-size:13.5px;color:var(--muted);margin-top:auto;line-height:1.45}
+figure b{font-size:14.5px}
+.figures{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,330px),1fr));gap:16px;margin:16px 0;align-items:stretch}
+.figures.three{grid-template-columns:repeat(auto-fit,minmax(min(100%,280px),1fr))}
+.tiles{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(46%,200px),1fr));gap:12px;margin:16px 0}
+.tile{background:var(--card);border:1px solid var(--line);border-radius:10px;padding:12px 14px}
+.tile b{display:block;font-size:23px;line-height:1.25;font-variant-numeric:tabular-nums;letter-spacing:-.01em}
+.tile b small{font-size:14px;font-weight:500;color:var(--muted);letter-spacing:0}
+.tile span{font-size:13px;color:var(--muted);line-height:1.35;display:block;margin-top:2px}
+.scroll{overflow-x:auto;margin:12px 0;border:1px solid var(--line);border-radius:10px;background:var(--card)}
+table{border-collapse:collapse;width:100%;font-size:14.5px;font-variant-numeric:tabular-nums}
+th,td{padding:7px 14px;text-align:left;vertical-align:top;border-bottom:1px solid var(--grid)}
+tr:last-child td{border-bottom:0}
+.wide{grid-column:1/-1}.wide svg{max-width:640px}
+.pair{columns:2;column-gap:24px}@media (max-width:760px){.pair{columns:1}}.pair dl{display:flex;justify-content:space-between;gap:16px;margin:0;padding:6px 0;border-bottom:1px solid var(--grid);break-inside:avoid;font-size:14.5px}
+.pair dt{margin:0}.pair dd{margin:0;white-space:nowrap;font-variant-numeric:tabular-nums}
+th{white-space:nowrap;font-weight:600;font-size:13px;color:var(--muted)}
+td.n,th.n{text-align:right;white-space:nowrap}
+td.w{white-space:nowrap}
+td.source{color:var(--muted);font-size:13.5px;min-width:180px}
+tr.group td{font-weight:600;background:color-mix(in srgb,var(--grid) 45%,transparent)}
+.tag{display:inline-block;font-size:11.5px;line-height:1.5;padding:0 7px;border-radius:9px;border:1px solid var(--noteline);background:var(--note);color:var(--text);white-space:nowrap}
+.ok{color:var(--good);font-weight:600}.no{color:var(--bad);font-weight:600}
+.note{background:var(--note);border:1px solid var(--noteline);border-radius:10px;padding:10px 16px;margin:12px 0}
+.note p{margin:4px 0}
+details summary{cursor:pointer;font-weight:600;margin:14px 0 6px}
+footer{grid-column:1/-1;margin-top:48px;padding-top:16px;border-top:1px solid var(--line);color:var(--muted);font-size:13.5px}
+code{font:13.5px/1.5 ui-monospace,SFMono-Regular,Menlo,"DejaVu Sans Mono",monospace;background:color-mix(in srgb,var(--grid) 60%,transparent);padding:1px 5px;border-radius:4px;overflow-wrap:anywhere}
+@media (max-width:520px){.page{padding:18px 14px 40px}th,td{padding:6px 10px}.tile b{font-size:20px}}
+@media print{:root{color-scheme:light;--text:#111;--muted:#444;--card:#fff;--page:#fff;--grid:#e4e4e4;--axis:#888;--line:#ccc}
+body{font-size:10.5pt}.page{display:block;max-width:none;padding:0}nav{display:none}h2{break-after:avoid}.figures{grid-template-columns:1fr 1fr}.scroll{overflow:visible}tr{break-inside:avoid}}
+)css";
+
+std::string cell(const std::string& text, const char* kind = "") {
+  return *kind != '\0' ? fmt::format("<td class=\"{}\">{}</td>", kind, escaped(text))
+                       : fmt::format("<td>{}</td>", escaped(text));
+}
+
+class Page {
+ public:
+  Page(const DataSheet& sheet, const Description& description, const std::vector<SheetFigure>& figures,
+       const std::vector<std::string>& overrides)
+      : sheet_(sheet),
+        description_(description),
+        figures_(figures),
+        overrides_(overrides),
+        values_(described_values(description)) {}
+
+  std::string write() {
+    overview();
+    mechanism();
+    if (sheet_.workspace) workspace(*sheet_.workspace);
+    if (sheet_.workspace) dexterity(*sheet_.workspace);
+    if (sheet_.continuous && sheet_.peak) force();
+    inertia();
+    resolution();
+    for (size_t i = 0; i < sheet_.drives.size(); ++i) drive(i);
+    parts();
+    sources();
+    std::string toc;
+    for (const auto& [id, title] : contents_)
+      toc += fmt::format("<li><a href=\"#{}\">{}</a></li>", id, escaped(title));
+    const std::string name = escaped(sheet_.title.empty() ? sheet_.name : sheet_.title);
+    return fmt::format(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+        "content=\"width=device-width,initial-scale=1\">\n"
+        "<title>{0} – data sheet</title>\n<style>{1}{2}</style>\n</head>\n<body>\n<div "
+        "class=\"page\">\n<header><h1>{0}</h1><p>Data sheet of <code>{3}</code></p><p>Source: "
+        "{4}</p>{5}</header>\n"
+        "<nav aria-label=\"Contents\"><b>Contents</b><ol>{6}</ol></nav>\n<main>\n{7}</main>\n"
+        "<footer>Computed by zwidth {8} from the device file alone. Lengths, angles and forces in the device's "
+        "own frame. The same numbers, in SI units, are in <a href=\"report.json\">report.json</a>.</footer>\n"
+        "</div>\n</body>\n</html>\n",
+        name, kStyle, figure_style(), escaped(sheet_.name), escaped(sheet_.source), changed(), toc, body_,
+        ZWIDTH_VERSION);
+  }
+
+ private:
+  void section(const std::string& id, const std::string& title) {
+    if (!contents_.empty()) body_ += "</section>\n";
+    contents_.emplace_back(id, title);
+    body_ += fmt::format("<section><h2 id=\"{}\">{}</h2>\n", id, escaped(title));
+  }
+
+  void how(const std::string& text) { body_ += fmt::format("<p class=\"how\">{}</p>\n", escaped(text)); }
+
+  std::string changed() const {
+    if (overrides_.empty()) return "";
+    std::string text = "<p>Changed on the command line: ";
+    for (size_t i = 0; i < overrides_.size(); ++i)
+      text += fmt::format("{}<code>{}</code>", i > 0 ? " " : "", escaped(overrides_[i]));
+    return text + "</p>";
+  }
+
+  void show_figures(const std::string& of_section, const char* kind = "") {
+    std::string cards;
+    for (const SheetFigure& figure : figures_) {
+      if (figure.section != of_section) continue;
+      cards += fmt::format("<figure class=\"card{}\" id=\"{}\"><b>{}</b>{}",
+                           figure.id.starts_with("margins") ? " wide" : "", figure.id, escaped(figure.title),
+                           figure.svg);
+      if (!figure.caption.empty()) cards += fmt::format("<figcaption>{}</figcaption>", escaped(figure.caption));
+      cards += "</figure>\n";
+    }
+    if (!cards.empty()) body_ += fmt::format("<div class=\"figures {}\">{}</div>\n", kind, cards);
+  }
+
+  void tile(const std::string& value, const std::string& label) {
+    // The unit steps back behind the number.
+    const size_t space = value.rfind(' ');
+    const std::string text = space == std::string::npos
+                                 ? escaped(value)
+                                 : fmt::format("{} <small>{}</small>", escaped(value.substr(0, space)),
+                                               escaped(value.substr(space + 1)));
+    body_ += fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>", text, escaped(label));
+  }
+
+  void overview() {
+    section("overview", "At a glance");
+    body_ += "<div class=\"tiles\">";
+    if (sheet_.workspace) {
+      tile(readable(sheet_.workspace->volume.value, "m^3", 3), "workspace volume");
+      tile(readable(2.0 * sheet_.workspace->inscribed.sphere.size, "m", 3),
+           "diameter of the largest sphere inside");
+      tile(number(sheet_.workspace->sweep[Figure::condition_number].mean, 3), "mean condition number");
+    }
+    if (sheet_.continuous)
+      tile(readable(sheet_.continuous->weakest.min, "N", 3), "force in every direction and place, continuous");
+    if (sheet_.peak)
+      tile(readable(sheet_.peak->weakest.min, "N", 3), "force in every direction and place, peak");
+    if (sheet_.inertia)
+      tile(readable(sheet_.inertia->heaviest.mean, "kg", 3), "mean apparent mass in the heaviest direction");
+    if (sheet_.resolution[0].count > 0) {
+      const double worst =
+          std::max({sheet_.resolution[0].mean, sheet_.resolution[1].mean, sheet_.resolution[2].mean});
+      tile(readable(worst, "m", 3), "mean position step at the tool");
+    }
+    for (const DriveSheet& drive : sheet_.drives) {
+      if (drive.response && drive.response->bandwidth) {
+        tile(readable(*drive.response->bandwidth, "Hz", 3), "force bandwidth of an actuator");
+        break;
+      }
+    }
+    body_ += "</div>\n";
+    show_figures("device");
+    std::string warnings;
+    for (const std::string& warning : sheet_.warnings) warnings += fmt::format("<p>{}</p>", escaped(warning));
+    if (!warnings.empty()) body_ += fmt::format("<div class=\"note\">{}</div>\n", warnings);
+  }
+
+  static std::string trimmed_quantity(double value, std::string_view unit) {
+    const std::string text = readable(value, unit, 6);
+    const size_t end = text.find_first_not_of("-0123456789.");
+    if (end == 0 || text.find('.') >= end) return text;
+    std::string digits = text.substr(0, end);
+    digits.erase(digits.find_last_not_of('0') + 1);
+    if (digits.back() == '.') digits.pop_back();
+    return end == std::string::npos ? digits : digits + text.substr(end);
+  }
+
+  std::string value_text(const DescribedValue& value) const {
+    if (!value.given()) return "not given";
+    if (value.dimension == Dimension::angle && value.values.size() == 2) {
+      return fmt::format("{}° … {}°", trimmed(value.values[0] * kDegrees), trimmed(value.values[1] * kDegrees));
+    }
+    if (value.values.size() == 1) return trimmed_quantity(value.values[0], si_unit(value.dimension));
+    // The unit of the largest component serves all.
+    const double largest = *std::max_element(value.values.begin(), value.values.end(),
+                                             [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const std::string whole = readable(largest, si_unit(value.dimension), 6);
+    const size_t space = whole.find(' ');
+    const double factor = largest != 0.0 ? std::strtod(whole.c_str(), nullptr) / largest : 1.0;
+    std::string text;
+    for (const double component : value.values)
+      text += (text.empty() ? "" : ", ") + trimmed(component * factor);
+    return text + (space == std::string::npos ? "" : whole.substr(space));
+  }
+
+  /// Whether `--set` changed this value: keys are compared without their indices.
+  bool overridden(const DescribedValue& value) const {
+    const auto plain = [](std::string_view path) {
+      std::string result;
+      for (size_t i = 0; i < path.size(); ++i) {
+        if (path[i] == '[') {
+          while (i < path.size() && path[i] != ']') ++i;
+        } else if (path[i] == '.' && i + 1 < path.size() && path[i + 1] >= '0' && path[i + 1] <= '9') {
+          while (i + 1 < path.size() && path[i + 1] != '.') ++i;
+        } else if (path[i] != ' ') {
+          result += path[i];
+        }
+      }
+      return result;
+    };
+    const std::string key = plain(value.table + "." + value.key);
+    return std::any_of(overrides_.begin(), overrides_.end(),
+                       [&](const std::string& text) { return plain(text.substr(0, text.find('='))) == key; });
+  }
+
+  std::string source_cell(const DescribedValue& value) const {
+    if (overridden(value))
+      return "<td class=\"source\"><span class=\"tag\">--set</span> on the command line</td>";
+    return source_cell(value.source, value.chosen());
+  }
+
+  static std::string source_cell(const std::string& source, bool chosen) {
+    if (!chosen) return fmt::format("<td class=\"source\">{}</td>", escaped(source));
+    std::string_view why = source;
+    why.remove_prefix(std::min(why.size(), std::string_view("chosen").size()));
+    while (!why.empty() && (why.front() == ':' || why.front() == ' ')) why.remove_prefix(1);
+    return fmt::format("<td class=\"source\"><span class=\"tag\">chosen</span> {}</td>", escaped(why));
+  }
+
+  void values_table(const std::function<bool(const DescribedValue&)>& wanted, bool grouped) {
+    std::string rows;
+    std::string group;
+    for (const DescribedValue& value : values_) {
+      if (!wanted(value)) continue;
+      if (grouped && value.table != group) {
+        group = value.table;
+        rows += fmt::format("<tr class=\"group\"><td colspan=\"3\"><code>{}</code></td></tr>", escaped(group));
+      }
+      std::string meaning = value.meaning;
+      if (!meaning.empty())
+        meaning[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning[0])));
+      rows += fmt::format("<tr><td>{} <code>{}</code></td>{}{}</tr>\n", escaped(meaning), escaped(value.key),
+                          cell(value_text(value), "n"), source_cell(value));
+    }
+    if (rows.empty()) return;
+    body_ += fmt::format(
+        "<div class=\"scroll\"><table><tr><th>Quantity</th><th class=\"n\">Value</th><th>Where it comes "
+        "from</th></tr>{}</table></div>\n",
+        rows);
+  }
+
+  void mechanism() {
+    section("mechanism", "Mechanism");
+    body_ +=
+        fmt::format("<p>A mechanism of type <b>{}</b> with {} active joints ({}) and {} freedoms of the tool.",
+                    escaped(sheet_.mechanism_type), sheet_.active_joints,
+                    escaped(fmt::format("{}", fmt::join(sheet_.joint_names, ", "))), sheet_.tool_freedoms);
+    if (sheet_.moving_mass > 0.0)
+      body_ += fmt::format(" Its bodies weigh {} together.", escaped(readable(sheet_.moving_mass, "kg")));
+    body_ += "</p>\n";
+    values_table([](const DescribedValue& value) { return value.table == "mechanism"; }, false);
+  }
+
+  void statistics_head() {
+    rows_ =
+        "<tr><th></th><th class=\"n\">Least</th><th class=\"n\">Mean</th><th "
+        "class=\"n\">Most</th><th>Unit</th></tr>";
+  }
+  void statistics(const std::string& name, const Statistic& statistic, double factor, const std::string& unit) {
+    const bool has = statistic.count > 0;
+    rows_ += "<tr>" + cell(name) + cell(has ? number(statistic.min * factor) : "–", "n") +
+             cell(has ? number(statistic.mean * factor) : "–", "n") +
+             cell(has ? number(statistic.max * factor) : "–", "n") + cell(unit, "w") + "</tr>\n";
+  }
+  void statistics_end() { body_ += fmt::format("<div class=\"scroll\"><table>{}</table></div>\n", rows_); }
+
+  void workspace(const WorkspaceSheet& workspace) {
+    section("workspace", "Workspace");
+    std::string rows = "<tr><th>Quantity</th><th class=\"n\">Value</th><th>Where it comes from</th></tr>";
+    const auto row = [&](const std::string& name, const std::string& value, const std::string& from) {
+      rows += "<tr>" + cell(name) + cell(value, "n") + cell(from, "source") + "</tr>\n";
+    };
+    const bool integral = workspace.volume.method == WorkspaceVolume::Method::integral;
+    row("Volume", quantity(workspace.volume.value, 1e6, "cm³", 6),
+        integral
+            ? fmt::format("integral of |det J| over the joint ranges, Gauss–Legendre with {} points per axis",
+                          workspace.volume.order)
+            : fmt::format(
+                  "counted on a lattice of {}, because det J changes sign or the legs do not close everywhere",
+                  format_quantity(workspace.volume.spacing, Dimension::length)));
+    row("Volume by counting", quantity(workspace.sweep.volume, 1e6, "cm³", 6),
+        fmt::format("{} points of a {} lattice, {} in its box", workspace.sweep.inside,
+                    format_quantity(workspace.sweep.spacing, Dimension::length),
+                    workspace.sweep.lattice_points));
+    for (size_t k = 0; k < 3; ++k) {
+      const Interval& range = workspace.extents.range[k];
+      row(fmt::format("Range of {}", axis(k)), interval(range.min, range.max, kMilli, "mm"),
+          fmt::format("{} wide; ends of the workspace itself, not of a lattice",
+                      quantity(range.width(), kMilli, "mm")));
+    }
+    const InscribedShapes& inscribed = workspace.inscribed;
+    row("Largest sphere inside", quantity(2.0 * inscribed.sphere.size, kMilli, "mm") + " diameter",
+        "centre at " + point_text(inscribed.sphere.centre));
+    row("Largest cube inside", quantity(inscribed.cube.size, kMilli, "mm") + " edge",
+        "sides along the axes, centre at " + point_text(inscribed.cube.centre));
+    body_ += fmt::format("<div class=\"scroll\"><table>{}</table></div>\n", rows);
+    show_figures("workspace");
+  }
+
+  static std::string axis(size_t k) { return std::string(1, static_cast<char>('x' + k)); }
+
+  void dexterity(const WorkspaceSheet& workspace) {
+    section("dexterity", "Dexterity");
+    how(fmt::format("Over {} points of a {} lattice in the workspace.", workspace.sweep.inside,
+                    format_quantity(workspace.sweep.spacing, Dimension::length)));
+    statistics_head();
+    statistics("Condition number of the Jacobian (1 is best)", workspace.sweep[Figure::condition_number], 1.0,
+               "");
+    statistics("Manipulability |det J|", workspace.sweep[Figure::manipulability], 1e6, "cm³/rad³");
+    if (workspace.sweep[Figure::leg_singularity].count > 0) {
+      statistics("Distance to a stretched or folded leg (0 is singular)",
+                 workspace.sweep[Figure::leg_singularity], 1.0, "");
+      statistics("Distance to coplanar forearms (0 is singular)", workspace.sweep[Figure::platform_singularity],
+                 1.0, "");
+    }
+    statistics_end();
+    show_figures("dexterity", "three");
+  }
+
+  void force() {
+    section("force", "Force");
+    how("Static forces at the tool within the torque limits of the joints, τ = Jᵀ f; the device's own weight "
+        "is not taken off. "
+        "“Every direction” is the radius of the largest ball in the force polytope, “best direction” its "
+        "farthest corner.");
+    for (const auto& [name, forces] :
+         {std::pair{"Continuous", &*sheet_.continuous}, std::pair{"Peak", &*sheet_.peak}}) {
+      body_ += fmt::format("<h3>{}: {} per joint, limited by the {}</h3>\n", name,
+                           escaped(readable(forces->torque.minCoeff(), "N m")), escaped(forces->limited_by));
+      statistics_head();
+      for (size_t k = 0; k < 3; ++k)
+        statistics(fmt::format("Pure force along {}", axis(k)), forces->axes[k], 1.0, "N");
+      statistics("In every direction", forces->weakest, 1.0, "N");
+      statistics("In the best direction", forces->strongest, 1.0, "N");
+      statistics_end();
+    }
+    show_figures("force", "three");
+  }
+
+  void inertia() {
+    if (!sheet_.inertia) return;
+    section("inertia", "Inertia");
+    how(fmt::format(
+        "Apparent mass at the tool, free to move sideways, with rotors and transmissions; lattice of {}.",
+        format_quantity(sheet_.inertia->spacing, Dimension::length)));
+    statistics_head();
+    for (size_t k = 0; k < 3; ++k)
+      statistics(fmt::format("Along {}", axis(k)), sheet_.inertia->along_axes[k], kMilli, "g");
+    statistics("In the lightest direction", sheet_.inertia->lightest, kMilli, "g");
+    statistics("In the heaviest direction", sheet_.inertia->heaviest, kMilli, "g");
+    statistics("Largest joint torque against gravity", sheet_.inertia->gravity_torque, kMilli, "mN m");
+    statistics_end();
+    values_table([](const DescribedValue& value) { return value.table.starts_with("body"); }, true);
+  }
+
+  void resolution() {
+    if (sheet_.resolution[0].count == 0) return;
+    section("resolution", "Resolution");
+    how("Step of the tool when every joint moves by one encoder count, at worst; step of the force when every "
+        "motor changes by one current step.");
+    statistics_head();
+    for (size_t k = 0; k < 3; ++k)
+      statistics(fmt::format("Position along {}", axis(k)), sheet_.resolution[k], 1e6, "µm");
+    statistics_end();
+    std::string text;
+    for (size_t j = 0; j < sheet_.joint_names.size(); ++j) {
+      const auto i = static_cast<Eigen::Index>(j);
+      text += fmt::format("<tr>{}{}{}</tr>", cell(sheet_.joint_names[j]),
+                          cell(readable(sheet_.joint_resolution[i], "rad"), "n"),
+                          cell(readable(sheet_.torque_resolution[i], "N m"), "n"));
+    }
+    body_ += fmt::format(
+        "<div class=\"scroll\"><table><tr><th>Joint</th><th class=\"n\">Angle of one count</th><th "
+        "class=\"n\">Torque of one current step</th></tr>{}</table></div>\n",
+        text);
+    if (sheet_.middle && sheet_.middle->force_resolution) {
+      const Vector3 f = *sheet_.middle->force_resolution * kMilli;
+      how(fmt::format("Force step in the middle of the joint ranges: {}, {}, {} mN along x, y, z.",
+                      number(f.x(), 3), number(f.y(), 3), number(f.z(), 3)));
+    }
+  }
+
+  void drive(size_t i) {
+    const DriveSheet& drive = sheet_.drives[i];
+    const DriveDescription& description = drive.drive.description();
+    section(fmt::format("drive-{}", i), sheet_.drives.size() > 1 ? fmt::format("Drive {}", i + 1) : "Drive");
+    const auto* capstan = std::get_if<CapstanDescription>(&description.transmission);
+    body_ += fmt::format(
+        "<p>Moves {}. Motor <b>{}</b>, encoder <b>{}</b>, amplifier <b>{}</b>, {}.</p>\n",
+        escaped(fmt::format("{}", fmt::join(drive.joints, ", "))), escaped(description.motor.info.title),
+        escaped(description.encoder.info.title), escaped(description.amplifier.info.title),
+        capstan != nullptr ? fmt::format("cable capstan with <b>{}</b>", escaped(capstan->cable.info.title))
+                           : std::string("no transmission"));
+    how("Computed from the values of the drive and its parts, which stand below with their sources.");
+    body_ += "<div class=\"card pair\">";
+    for (const DriveFigure& figure : drive.figures) {
+      std::string name = figure.name;
+      name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+      body_ += fmt::format("<dl><dt>{}</dt><dd>{}</dd></dl>", escaped(name),
+                           escaped(readable(figure.value, figure.unit)));
+    }
+    body_ += "</div>\n";
+    show_figures(fmt::format("drive-{}", i));
+    std::string rows =
+        "<tr><th>Margin</th><th class=\"n\">Demand</th><th class=\"n\">Limit</th><th "
+        "class=\"n\">Used</th><th></th><th>Rule</th></tr>";
+    for (const Margin& margin : drive.margins) {
+      rows +=
+          "<tr>" + cell(margin.name, "w") + cell(readable(margin.demand, margin.unit), "n") +
+          cell(readable(margin.capability, margin.unit), "n") +
+          cell(margin.utilisation ? fmt::format("{} %", number(100.0 * *margin.utilisation, 3)) : "–", "n") +
+          cell(margin.ok ? "✓" : "✗", margin.ok ? "ok" : "no") + cell(margin.rule, "source") + "</tr>\n";
+    }
+    body_ += fmt::format(
+        "<h3>Margins</h3><div class=\"scroll\"><table>{}</table></div>\n<h3>Values of the drive</h3>\n", rows);
+    const std::string table = fmt::format("drive[{}]", i);
+    values_table(
+        [&](const DescribedValue& value) {
+          return value.table == table || value.table.starts_with(table + ".");
+        },
+        true);
+  }
+
+  template <class Part>
+  void part(const Part& part) {
+    if (!seen_.insert(part.info.name).second) return;
+    body_ += fmt::format(
+        "<details><summary>{} <span class=\"how\">({})</span></summary><p class=\"how\">Source: {}</p>",
+        escaped(part.info.title), part_kind<Part>(), escaped(part.info.source));
+    std::string rows = "<tr><th>Quantity</th><th class=\"n\">Value</th><th>Where it comes from</th></tr>";
+    for (const PartValue& value : part_values(part)) {
+      std::string meaning = value.meaning;
+      if (!meaning.empty())
+        meaning[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning[0])));
+      rows += fmt::format("<tr><td>{} <code>{}</code></td>{}{}</tr>", escaped(meaning), escaped(value.key),
+                          cell(trimmed_quantity(value.value, si_unit(value.dimension)), "n"),
+                          given(value.value) ? source_cell(value.source, value.source.starts_with("chosen"))
+                                             : "<td class=\"source\">no value in the source</td>");
+    }
+    body_ += fmt::format("<div class=\"scroll\"><table>{}</table></div></details>\n", rows);
+  }
+
+  void parts() {
+    if (description_.drives.empty()) return;
+    section("parts", "Parts");
+    for (const DriveDescription& drive : description_.drives) {
+      part(drive.motor);
+      part(drive.encoder);
+      part(drive.amplifier);
+      if (const auto* capstan = std::get_if<CapstanDescription>(&drive.transmission)) part(capstan->cable);
+      if (drive.preloader) part(drive.preloader->material);
+    }
+  }
+
+  void sources() {
+    section("sources", "What is chosen, and what is not given");
+    std::string chosen;
+    std::string missing;
+    for (const DescribedValue& value : values_) {
+      const std::string item = fmt::format("<li><code>{}.{}</code> {}</li>", escaped(value.table),
+                                           escaped(value.key), escaped(value.meaning));
+      if (!value.given()) {
+        missing += item;
+      } else if (value.chosen() && !overridden(value)) {
+        chosen += item;
+      }
+    }
+    body_ +=
+        chosen.empty()
+            ? "<p>Every value comes from a source.</p>\n"
+            : fmt::format(
+                  "<p>No source gives these values; they were chosen by the author of the device file, and "
+                  "what follows from them (inertia, for instance) is no better than they are:</p><ul>{}</ul>\n",
+                  chosen);
+    if (!missing.empty())
+      body_ += fmt::format("<p>Not given, and not needed for the figures above:</p><ul>{}</ul>\n", missing);
+    body_ += "</section>\n";
+  }
+
+  const DataSheet& sheet_;
+  const Description& description_;
+  const std::vector<SheetFigure>& figures_;
+  const std::vector<std::string>& overrides_;
+  std::vector<DescribedValue> values_;
+  std::vector<std::pair<std::string, std::string>> contents_;
+  std::set<std::string> seen_;
+  std::string body_;
+  std::string rows_;
+};
+
+}  // namespace
+
+std::string data_sheet_html(const DataSheet& sheet, const Description& description,
+                            const std::vector<SheetFigure>& figures,
+                            const std::vector<std::string>& overrides) {
+  return Page(sheet, description, figures, overrides).write();
+}
+
+}  // namespace zwidth

@@ -1,0 +1,255 @@
+#include "sheet_json.h"
+
+#include <cmath>
+
+#include "zwidth/description/values.h"
+
+namespace zwidth {
+
+namespace {
+
+Json optional_number(const std::optional<double>& value) {
+  return value ? json_number(*value) : Json(nullptr);
+}
+
+Json numbers(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(json_number(value));
+  return list;
+}
+
+Json axes_json(const std::array<Statistic, 3>& axes) {
+  return {{"x", statistic_json(axes[0])}, {"y", statistic_json(axes[1])}, {"z", statistic_json(axes[2])}};
+}
+
+Json force_json(const ForceSheet& forces) {
+  Json entry;
+  entry["torque"] = json_array(forces.torque);
+  entry["limited_by"] = forces.limited_by;
+  entry["axis"] = axes_json(forces.axes);
+  entry["every_direction"] = statistic_json(forces.weakest);
+  entry["strongest"] = statistic_json(forces.strongest);
+  return entry;
+}
+
+Json torque_json(const TorqueLimit& limit) {
+  Json entry;
+  entry["usable"] = json_number(limit.usable);
+  entry["limited_by"] = to_string(limit.limited_by);
+  entry["motor"] = json_number(limit.motor);
+  entry["slip"] = optional_number(limit.slip);
+  entry["amplifier"] = json_number(limit.amplifier);
+  return entry;
+}
+
+Json workspace_json(const WorkspaceSheet& workspace) {
+  Json entry;
+  entry["volume"] = json_number(workspace.volume.value);
+  entry["volume_method"] = to_string(workspace.volume.method);
+  entry["volume_error"] = json_number(workspace.volume.error_estimate);
+  entry["lattice"] = {{"spacing", json_number(workspace.sweep.spacing)},
+                      {"points", workspace.sweep.lattice_points},
+                      {"inside", workspace.sweep.inside},
+                      {"volume", json_number(workspace.sweep.volume)}};
+  Json ranges;
+  for (size_t k = 0; k < 3; ++k)
+    ranges[std::string(1, static_cast<char>('x' + k))] = json_interval(workspace.extents.range[k]);
+  entry["ranges"] = ranges;
+  const InscribedShapes& inscribed = workspace.inscribed;
+  entry["inscribed_sphere"] = {{"centre", json_array(inscribed.sphere.centre)},
+                               {"radius", json_number(inscribed.sphere.size)}};
+  entry["inscribed_cube"] = {{"centre", json_array(inscribed.cube.centre)},
+                             {"edge", json_number(inscribed.cube.size)}};
+  Json figures;
+  for (const Figure which : {Figure::condition_number, Figure::manipulability, Figure::leg_singularity,
+                             Figure::platform_singularity}) {
+    figures[std::string(figure_info(static_cast<int>(which)).name)] = statistic_json(workspace.sweep[which]);
+  }
+  entry["figures"] = figures;
+  return entry;
+}
+
+Json posture_json(const PostureSheet& posture) {
+  Json entry;
+  entry["joints"] = json_array(posture.active);
+  entry["position"] = json_array(posture.position);
+  entry["jacobian"] = json_array(posture.jacobian);
+  entry["condition_number"] = json_number(posture.condition_number);
+  entry["manipulability"] = json_number(posture.manipulability);
+  entry["gravity_torques"] = json_array(posture.gravity_torques);
+  for (const auto& [key, forces] : {std::pair{"continuous_forces", &posture.continuous_forces},
+                                    std::pair{"peak_forces", &posture.peak_forces}}) {
+    if (!*forces) {
+      entry[key] = nullptr;
+      continue;
+    }
+    Json vertices = Json::array();
+    for (const ToolVector& vertex : (*forces)->vertices) vertices.push_back(json_array(vertex));
+    entry[key] = {{"every_direction", json_number((*forces)->weakest)},
+                  {"weakest_direction", json_array((*forces)->weakest_direction)},
+                  {"strongest", json_number((*forces)->strongest)},
+                  {"strongest_direction", json_array((*forces)->strongest_direction)},
+                  {"vertices", vertices}};
+  }
+  if (posture.apparent_mass) {
+    entry["apparent_mass"] = {{"axis", json_array(posture.apparent_mass->along_axes)},
+                              {"lightest", json_number(posture.apparent_mass->lightest)},
+                              {"heaviest", json_number(posture.apparent_mass->heaviest)}};
+  } else {
+    entry["apparent_mass"] = nullptr;
+  }
+  entry["position_resolution"] = posture.tool_resolution ? json_array(*posture.tool_resolution) : Json(nullptr);
+  entry["force_resolution"] = posture.force_resolution ? json_array(*posture.force_resolution) : Json(nullptr);
+  return entry;
+}
+
+Json drive_json(const DriveSheet& sheet) {
+  const DriveDescription& description = sheet.drive.description();
+  Json entry;
+  entry["joints"] = sheet.joints;
+  entry["motor"] = description.motor.info.name;
+  entry["encoder"] = description.encoder.info.name;
+  entry["amplifier"] = description.amplifier.info.name;
+  const bool capstan = std::holds_alternative<CapstanDescription>(description.transmission);
+  entry["transmission"] = capstan ? "capstan" : "direct";
+  entry["torque"] = {{"continuous", torque_json(sheet.continuous)},
+                     {"peak", torque_json(sheet.peak)},
+                     {"stall", torque_json(sheet.stall)}};
+  entry["speed"] = {{"usable", json_number(sheet.speed.usable)},
+                    {"limited_by", to_string(sheet.speed.limited_by)},
+                    {"unloaded", json_number(sheet.speed.unloaded)},
+                    {"at_continuous_torque", json_number(sheet.speed.at_continuous_torque)},
+                    {"encoder", optional_number(sheet.speed.encoder)}};
+  Json figures;
+  for (const DriveFigure& figure : sheet.figures)
+    figures[figure.key] = {{"value", json_number(figure.value)}, {"unit", figure.unit}};
+  entry["figures"] = figures;
+  Json margins = Json::array();
+  for (const Margin& margin : sheet.margins) margins.push_back(margin_json(margin));
+  entry["margins"] = margins;
+  entry["current_loop"] = {
+      {"bandwidth", optional_number(sheet.current_loop_bandwidth)},
+      {"step", {{"period", json_number(sheet.current_step_period)}, {"samples", numbers(sheet.current_step)}}}};
+  if (!sheet.response) {
+    entry["actuator"] = nullptr;
+    return entry;
+  }
+  const ActuatorResponse& response = *sheet.response;
+  Json actuator;
+  actuator["force_per_current"] = json_number(response.dc_gain);
+  actuator["cable_stiffness"] = json_number(response.cable_stiffness);
+  actuator["resonance_frequency"] =
+      response.resonance.is_resonance ? json_number(response.resonance.frequency) : Json(nullptr);
+  actuator["resonance_peak"] =
+      response.resonance.is_resonance ? json_number(response.resonance_peak) : Json(nullptr);
+  actuator["bandwidth"] = optional_number(response.bandwidth);
+  actuator["frequency_response"] = {{"frequency", numbers(response.frequency)},
+                                    {"magnitude", numbers(response.magnitude)},
+                                    {"phase", numbers(response.phase)}};
+  actuator["step"] = {{"current", json_number(response.step_current)},
+                      {"time", numbers(response.step_time)},
+                      {"force", numbers(response.step_force)},
+                      {"overshoot", json_number(response.step.overshoot)}};
+  entry["actuator"] = actuator;
+  return entry;
+}
+
+}  // namespace
+
+Json statistic_json(const Statistic& statistic) {
+  if (statistic.count == 0) return nullptr;
+  Json entry;
+  entry["min"] = json_number(statistic.min);
+  entry["max"] = json_number(statistic.max);
+  entry["mean"] = json_number(statistic.mean);
+  entry["min_at"] = json_array(statistic.min_at);
+  entry["max_at"] = json_array(statistic.max_at);
+  if (!std::isfinite(statistic.max) || !std::isfinite(statistic.min))
+    entry["note"] = "unbounded: a singularity lies in the workspace";
+  return entry;
+}
+
+Json margin_json(const Margin& margin) {
+  Json entry;
+  entry["name"] = margin.name;
+  entry["demand"] = json_number(margin.demand);
+  entry["capability"] = json_number(margin.capability);
+  entry["unit"] = margin.unit;
+  entry["utilisation"] = optional_number(margin.utilisation);
+  entry["ok"] = margin.ok;
+  entry["rule"] = margin.rule;
+  return entry;
+}
+
+Json data_sheet_json(const DataSheet& sheet, const Description& description) {
+  Json document;
+  document["device"] = sheet.name;
+  document["title"] = sheet.title;
+  document["source"] = sheet.source;
+  document["zwidth"] = ZWIDTH_VERSION;
+  document["complete"] = sheet.complete;
+  Json mechanism;
+  mechanism["type"] = sheet.mechanism_type;
+  mechanism["active_joints"] = sheet.joint_names;
+  mechanism["tool_freedoms"] = sheet.tool_freedoms;
+  Json ranges = Json::array();
+  for (const Interval& range : sheet.joint_ranges) ranges.push_back(json_interval(range));
+  mechanism["joint_ranges"] = ranges;
+  mechanism["moving_mass"] = json_number(sheet.moving_mass);
+  document["mechanism"] = mechanism;
+  Json values = Json::array();
+  for (const DescribedValue& value : described_values(description)) {
+    Json entry;
+    entry["key"] = value.table + "." + value.key;
+    entry["value"] = value.values.size() == 1 ? json_number(value.values.front()) : numbers(value.values);
+    entry["unit"] = si_unit(value.dimension);
+    entry["source"] = value.source;
+    entry["chosen"] = value.chosen();
+    if (!value.given()) entry["note"] = "not given by the source";
+    values.push_back(entry);
+  }
+  document["values"] = values;
+
+  Json notes;
+  const auto absent = [&](const char* key, const char* why) {
+    document[key] = nullptr;
+    notes[key] = why;
+  };
+  if (sheet.workspace) {
+    document["workspace"] = workspace_json(*sheet.workspace);
+  } else {
+    absent("workspace", "defined for three active joints and a tool that only translates");
+  }
+  if (sheet.continuous && sheet.peak) {
+    document["forces"] = {{"continuous", force_json(*sheet.continuous)}, {"peak", force_json(*sheet.peak)}};
+  } else {
+    absent("forces", "needs a drive on every active joint, and a workspace");
+  }
+  if (sheet.inertia) {
+    document["inertia"] = {{"spacing", json_number(sheet.inertia->spacing)},
+                           {"axis", axes_json(sheet.inertia->along_axes)},
+                           {"lightest", statistic_json(sheet.inertia->lightest)},
+                           {"heaviest", statistic_json(sheet.inertia->heaviest)},
+                           {"gravity_torque", statistic_json(sheet.inertia->gravity_torque)}};
+  } else {
+    absent("inertia", "nothing has mass");
+  }
+  Json resolution;
+  resolution["joint"] = json_array(sheet.joint_resolution);
+  resolution["torque"] = json_array(sheet.torque_resolution);
+  resolution["position"] = axes_json(sheet.resolution);
+  document["resolution"] = resolution;
+  if (sheet.middle) {
+    document["middle"] = posture_json(*sheet.middle);
+  } else {
+    absent("middle", "the legs do not close in the middle of the joint ranges");
+  }
+  Json drives = Json::array();
+  for (const DriveSheet& drive : sheet.drives) drives.push_back(drive_json(drive));
+  document["drives"] = drives;
+  document["warnings"] = sheet.warnings;
+  if (!notes.empty()) document["notes"] = notes;
+  return document;
+}
+
+}  // namespace zwidth

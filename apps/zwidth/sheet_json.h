@@ -1,0 +1,16 @@
+#pragma once
+
+#include "context.h"
+
+#include "zwidth/analysis/data_sheet.h"
+
+namespace zwidth {
+
+/// A data sheet as the document of `zwidth report --json` (keys in docs/json.md).
+Json data_sheet_json(const DataSheet& sheet, const Description& description);
+
+/// Minimum, maximum and mean, and where they are; null where the figure is not defined.
+Json statistic_json(const Statistic& statistic);
+Json margin_json(const Margin& margin);
+
+}  // namespace zwidth

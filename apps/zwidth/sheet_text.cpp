@@ -1,0 +1,348 @@
+#include "sheet_text.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <vector>
+
+#include "zwidth/description/units.h"
+#include "zwidth/description/values.h"
+
+namespace zwidth {
+
+namespace {
+
+/// A slice of the workspace as a picture of characters.
+class Silhouette {
+ public:
+  Silhouette(const SliceMap& map, double metres_per_dot, bool unicode)
+      : columns_(
+            std::max(1, static_cast<int>(std::ceil(map.u_range.width() / metres_per_dot / (unicode ? 2 : 1))))),
+        rows_(std::max(1,
+                       static_cast<int>(std::ceil(map.v_range.width() / metres_per_dot / (unicode ? 4 : 2))))) {
+    const int across = unicode ? 2 : 1;
+    const int down = unicode ? 4 : 1;
+    const auto& values = map.values[static_cast<size_t>(Figure::condition_number)];
+    for (int row = 0; row < rows_; ++row) {
+      std::string line;
+      for (int column = 0; column < columns_; ++column) {
+        unsigned bits = 0;
+        for (int dy = 0; dy < down; ++dy) {
+          for (int dx = 0; dx < across; ++dx) {
+            const double u = (column * across + dx + 0.5) / (columns_ * across);
+            const double v = 1.0 - (row * down + dy + 0.5) / (rows_ * down);
+            const int iu = std::clamp(static_cast<int>(u * map.nu), 0, map.nu - 1);
+            const int iv = std::clamp(static_cast<int>(v * map.nv), 0, map.nv - 1);
+            const double value =
+                values[static_cast<size_t>(iv) * static_cast<size_t>(map.nu) + static_cast<size_t>(iu)];
+            // Dots of a braille cell: 1 2 3 7 down the left, 4 5 6 8 down the right.
+            static constexpr unsigned kDots[2][4] = {{0x01, 0x02, 0x04, 0x40}, {0x08, 0x10, 0x20, 0x80}};
+            if (std::isfinite(value)) bits |= kDots[dx][dy];
+          }
+        }
+        if (unicode) {
+          const unsigned code = 0x2800 + bits;
+          line += static_cast<char>(0xE0 | (code >> 12));
+          line += static_cast<char>(0x80 | ((code >> 6) & 0x3F));
+          line += static_cast<char>(0x80 | (code & 0x3F));
+        } else {
+          line += bits != 0 ? '#' : ' ';
+        }
+      }
+      lines_.push_back(line);
+    }
+  }
+
+  int width() const { return columns_; }
+  int height() const { return rows_; }
+  std::string line(int row) const {
+    return row < rows_ ? lines_[static_cast<size_t>(row)] : std::string(static_cast<size_t>(columns_), ' ');
+  }
+
+ private:
+  int columns_;
+  int rows_;
+  std::vector<std::string> lines_;
+};
+
+class SheetText {
+ public:
+  SheetText(const DataSheet& sheet, const Description& description, const Terminal& terminal)
+      : sheet_(sheet), description_(description), text_(terminal) {}
+
+  std::string write() {
+    identity();
+    if (sheet_.workspace) workspace(*sheet_.workspace);
+    if (sheet_.workspace) dexterity(*sheet_.workspace);
+    if (sheet_.continuous && sheet_.peak) forces();
+    if (sheet_.inertia) inertia(*sheet_.inertia);
+    resolution();
+    for (const DriveSheet& drive : sheet_.drives) drive_section(drive);
+    notes();
+    return text_.text();
+  }
+
+ private:
+  const Terminal& terminal() const { return text_.terminal(); }
+  bool wide() const { return terminal().width >= 110; }
+
+  void identity() {
+    text_.title(sheet_.name, sheet_.title);
+    text_.paragraph("source: " + sheet_.source, 0, Tint::dim);
+    text_.heading("Mechanism");
+    text_.row("type", sheet_.mechanism_type,
+              fmt::format("{} active joints, {} tool freedoms", sheet_.active_joints, sheet_.tool_freedoms));
+    for (const GeometryEntry& entry : sheet_.geometry) {
+      if (entry.key.starts_with("joint_range")) continue;  // said below
+      std::string note = entry.symbol;
+      for (const DescribedValue& value : described_values(description_)) {
+        if (value.table == "mechanism" && value.key == entry.key && value.chosen())
+          note += (note.empty() ? "" : ", ") + value.source;
+      }
+      text_.row(entry.name, entry.unit.empty() ? trimmed(entry.value) : readable(entry.value, entry.unit),
+                note);
+    }
+    if (!sheet_.joint_ranges.empty()) {
+      const bool same =
+          std::all_of(sheet_.joint_ranges.begin(), sheet_.joint_ranges.end(),
+                      [&](const Interval& range) { return range == sheet_.joint_ranges.front(); });
+      for (size_t i = 0; i < (same ? 1 : sheet_.joint_ranges.size()); ++i) {
+        const Interval& range = sheet_.joint_ranges[i];
+        text_.row(same ? "range of every joint" : "range of " + sheet_.joint_names[i],
+                  fmt::format("{}° … {}°", number(range.min * kDegrees), number(range.max * kDegrees)));
+      }
+    }
+    if (sheet_.moving_mass > 0.0)
+      text_.row("moving mass", readable(sheet_.moving_mass, "kg"), "of all bodies, drives not counted");
+  }
+
+  void workspace(const WorkspaceSheet& workspace) {
+    text_.heading("Workspace");
+    const bool integral = workspace.volume.method == WorkspaceVolume::Method::integral;
+    text_.row("volume", quantity(workspace.volume.value, 1e6, "cm³", 5),
+              integral ? "integral of |det J|" : "counted on a lattice");
+    text_.row("", quantity(workspace.sweep.volume, 1e6, "cm³", 5),
+              fmt::format("{} points of a {} lattice", workspace.sweep.inside,
+                          format_quantity(workspace.sweep.spacing, Dimension::length)));
+    for (size_t k = 0; k < 3; ++k) {
+      const Interval& range = workspace.extents.range[k];
+      text_.row(fmt::format("range of {}", static_cast<char>('x' + k)),
+                interval(range.min, range.max, kMilli, "mm"), quantity(range.width(), kMilli, "mm wide"));
+    }
+    const InscribedShapes& inscribed = workspace.inscribed;
+    text_.row("largest sphere", fmt::format("{} diameter", quantity(2.0 * inscribed.sphere.size, kMilli, "mm")),
+              "centre " + point_text(inscribed.sphere.centre));
+    text_.row("largest cube", fmt::format("{} edge", quantity(inscribed.cube.size, kMilli, "mm")),
+              "centre " + point_text(inscribed.cube.centre));
+    silhouettes(workspace);
+  }
+
+  void silhouettes(const WorkspaceSheet& workspace) {
+    const auto& slices = workspace.slices;
+    if (slices[0].nu == 0 || slices[1].nu == 0 || slices[2].nu == 0) return;
+    const int room = wide() ? 96 : 70;
+    double across = 0.0;
+    for (const SliceMap& slice : slices) across += slice.u_range.width();
+    const double metres_per_dot = across / (room - 8) / (terminal().unicode ? 2.0 : 1.0);
+    const std::array<int, 3> order{2, 1, 0};
+    std::vector<Silhouette> pictures;
+    int height = 0;
+    std::string captions = "  ";
+    for (const int axis : order) {
+      const SliceMap& slice = slices[static_cast<size_t>(axis)];
+      pictures.emplace_back(slice, metres_per_dot, terminal().unicode);
+      height = std::max(height, pictures.back().height());
+      std::string caption = fmt::format("{}{} at {} = {:.0f} mm", static_cast<char>('x' + slice.slice.u),
+                                        static_cast<char>('x' + slice.slice.v), static_cast<char>('x' + axis),
+                                        slice.slice.at * kMilli);
+      caption.resize(
+          static_cast<size_t>(std::max(pictures.back().width() + 4, static_cast<int>(caption.size()))), ' ');
+      captions += caption;
+    }
+    text_.gap();
+    for (int row = 0; row < height; ++row) {
+      std::string line = "  ";
+      for (const Silhouette& picture : pictures) {
+        // Pictures stand on a common floor.
+        const int from_top = row - (height - picture.height());
+        line += (from_top < 0 ? std::string(static_cast<size_t>(picture.width()), ' ')
+                              : tinted(terminal(), Tint::accent, picture.line(from_top))) +
+                "    ";
+      }
+      line.erase(line.find_last_not_of(' ') + 1);
+      text_.line(line);
+    }
+    captions.erase(captions.find_last_not_of(' ') + 1);
+    text_.line(tinted(terminal(), Tint::dim, captions));
+  }
+
+  static std::vector<std::string> cells(const std::string& label, const Statistic& statistic, double factor,
+                                        const std::string& unit) {
+    if (statistic.count == 0) return {label, "–", "–", "–", unit};
+    return {label, number(statistic.min * factor), number(statistic.mean * factor),
+            number(statistic.max * factor), unit};
+  }
+
+  void dexterity(const WorkspaceSheet& workspace) {
+    text_.heading("Dexterity over the workspace");
+    std::vector<std::vector<std::string>> rows;
+    rows.push_back(cells("condition number", workspace.sweep[Figure::condition_number], 1.0, ""));
+    rows.push_back(cells("manipulability", workspace.sweep[Figure::manipulability], 1e6, "cm³/rad³"));
+    if (workspace.sweep[Figure::leg_singularity].count > 0) {
+      rows.push_back(
+          cells("leg singularity (0 = singular)", workspace.sweep[Figure::leg_singularity], 1.0, ""));
+      rows.push_back(cells("platform singularity", workspace.sweep[Figure::platform_singularity], 1.0, ""));
+    }
+    text_.table({"", "min", "mean", "max", ""}, rows);
+  }
+
+  void forces() {
+    text_.heading("Force over the workspace");
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& [name, forces] :
+         {std::pair{"continuous", &*sheet_.continuous}, std::pair{"peak", &*sheet_.peak}}) {
+      const char* axes = "xyz";
+      for (size_t k = 0; k < 3; ++k) {
+        rows.push_back(cells(fmt::format("{}, along {}", name, axes[k]), forces->axes[k], 1.0, "N"));
+      }
+      rows.push_back(cells(fmt::format("{}, in every direction", name), forces->weakest, 1.0, "N"));
+      rows.push_back(cells(fmt::format("{}, in the best direction", name), forces->strongest, 1.0, "N"));
+    }
+    text_.table({"", "min", "mean", "max", ""}, rows);
+    const auto torque = [](const ForceSheet& forces) {
+      const bool same = (forces.torque.array() == forces.torque[0]).all();
+      return same ? readable(forces.torque[0], "N m")
+                  : fmt::format("{} … {}", readable(forces.torque.minCoeff(), "N m"),
+                                readable(forces.torque.maxCoeff(), "N m"));
+    };
+    text_.paragraph(
+        fmt::format(
+            "Joint torque {} continuous (limited by the {}), {} peak ({}). Device's weight not taken off.",
+            torque(*sheet_.continuous), sheet_.continuous->limited_by, torque(*sheet_.peak),
+            sheet_.peak->limited_by),
+        2, Tint::dim);
+  }
+
+  void inertia(const InertiaSweep& inertia) {
+    text_.heading("Inertia felt at the tool");
+    std::vector<std::vector<std::string>> rows;
+    const char* axes = "xyz";
+    for (size_t k = 0; k < 3; ++k)
+      rows.push_back(cells(fmt::format("apparent mass along {}", axes[k]), inertia.along_axes[k], kMilli, "g"));
+    rows.push_back(cells("in the lightest direction", inertia.lightest, kMilli, "g"));
+    rows.push_back(cells("in the heaviest direction", inertia.heaviest, kMilli, "g"));
+    rows.push_back(cells("torque against gravity", inertia.gravity_torque, kMilli, "mN m"));
+    text_.table({"", "min", "mean", "max", ""}, rows);
+  }
+
+  void resolution() {
+    if (sheet_.resolution[0].count == 0) return;
+    text_.heading("Resolution at the tool");
+    std::vector<std::vector<std::string>> rows;
+    const char* axes = "xyz";
+    for (size_t k = 0; k < 3; ++k)
+      rows.push_back(cells(fmt::format("smallest step along {}", axes[k]), sheet_.resolution[k], 1e6, "µm"));
+    text_.table({"", "min", "mean", "max", ""}, rows);
+    if (sheet_.middle && sheet_.middle->force_resolution) {
+      const Vector3 f = *sheet_.middle->force_resolution * kMilli;
+      text_.row("force step, mid-range",
+                fmt::format("{} {} {} mN", number(f.x(), 3), number(f.y(), 3), number(f.z(), 3)),
+                "one current step in every motor");
+    }
+  }
+
+  void drive_section(const DriveSheet& drive) {
+    const DriveDescription& description = drive.drive.description();
+    std::string joints;
+    for (const std::string& joint : drive.joints) joints += (joints.empty() ? "" : ", ") + joint;
+    text_.heading("Drive of " + joints);
+    text_.row("motor", description.motor.info.title);
+    text_.row("encoder", description.encoder.info.title);
+    text_.row("amplifier", description.amplifier.info.title);
+    if (const auto* capstan = std::get_if<CapstanDescription>(&description.transmission)) {
+      text_.row("transmission", "cable capstan", capstan->cable.info.title);
+    } else {
+      text_.row("transmission", "direct");
+    }
+    std::vector<std::vector<std::string>> rows;
+    const auto& figures = drive.figures;
+    const size_t half = (figures.size() + 1) / 2;
+    if (wide()) {
+      for (size_t i = 0; i < half; ++i) {
+        const DriveFigure& left = figures[i];
+        std::vector<std::string> row{left.name, readable(left.value, left.unit)};
+        if (i + half < figures.size()) {
+          row.push_back(figures[i + half].name);
+          row.push_back(readable(figures[i + half].value, figures[i + half].unit));
+        }
+        rows.push_back(row);
+      }
+      text_.gap();
+      for (const auto& row : rows) {
+        std::string line =
+            fmt::format("  {}{}{}", row[0],
+                        std::string(static_cast<size_t>(std::max(1, 40 - columns(row[0]))), ' '), row[1]);
+        if (row.size() > 2) {
+          line += std::string(static_cast<size_t>(std::max(2, 60 - columns(line))), ' ') + row[2];
+          line += std::string(static_cast<size_t>(std::max(2, 102 - columns(line))), ' ') + row[3];
+        }
+        text_.line(line);
+      }
+    } else {
+      text_.gap();
+      for (const DriveFigure& figure : figures) {
+        text_.line(fmt::format("  {}{} {}", figure.name,
+                               std::string(static_cast<size_t>(std::max(1, 48 - columns(figure.name))), ' '),
+                               readable(figure.value, figure.unit)));
+      }
+    }
+    text_.gap();
+    rows.clear();
+    for (const Margin& margin : drive.margins) {
+      const double share = margin.utilisation.value_or(1.0);
+      const int full = static_cast<int>(std::lround(std::clamp(share, 0.0, 1.0) * 10));
+      std::string bar;
+      for (int i = 0; i < 10; ++i) bar += i < full ? "█" : "░";
+      rows.push_back({margin.name, readable(margin.demand, margin.unit),
+                      readable(margin.capability, margin.unit),
+                      margin.utilisation ? fmt::format("{} %", number(100.0 * share, 3)) : "–",
+                      tinted(terminal(), margin.ok ? Tint::good : Tint::bad, bar),
+                      tinted(terminal(), margin.ok ? Tint::good : Tint::bad, margin.ok ? "✓" : "✗")});
+    }
+    text_.table({"margin", "demand", "limit", "used", "", ""}, rows);
+  }
+
+  void notes() {
+    std::vector<std::string> chosen;
+    for (const DescribedValue& value : described_values(description_)) {
+      if (value.chosen()) chosen.push_back(value.table + "." + value.key);
+    }
+    if (sheet_.warnings.empty() && chosen.empty()) return;
+    text_.heading("Notes");
+    for (const std::string& warning : sheet_.warnings) text_.paragraph("▲ " + warning, 2, Tint::warning);
+    if (!chosen.empty()) {
+      text_.paragraph(fmt::format("{} values are chosen, because no source gives them: {}.", chosen.size(),
+                                  fmt::join(chosen, ", ")),
+                      2, Tint::dim);
+    }
+  }
+
+  const DataSheet& sheet_;
+  const Description& description_;
+  Sheet text_;
+};
+
+}  // namespace
+
+std::string in_words(std::string_view key) {
+  std::string words(key);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+std::string data_sheet_text(const DataSheet& sheet, const Description& description, const Terminal& terminal) {
+  return SheetText(sheet, description, terminal).write();
+}
+
+}  // namespace zwidth

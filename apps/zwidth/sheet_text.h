@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "terminal.h"
+
+#include "zwidth/analysis/data_sheet.h"
+
+namespace zwidth {
+
+/// A data sheet for a terminal, without the notes about files.
+std::string data_sheet_text(const DataSheet& sheet, const Description& description, const Terminal& terminal);
+
+/// "leg singularity" of "leg_singularity".
+std::string in_words(std::string_view key);
+
+}  // namespace zwidth

@@ -1,0 +1,316 @@
+#include "zwidth/analysis/workspace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <sstream>
+
+#include "figure.h"
+#include "gnuplot.h"
+#include "interrupt.h"
+#include "model.h"
+#include "sheet_json.h"
+#include "verbs.h"
+
+#include "zwidth/analysis/data_sheet.h"
+#include "zwidth/description/units.h"
+
+namespace zwidth {
+
+namespace {
+
+struct WorkspaceArguments : DeviceArguments {
+  std::string grid = "1mm";
+  std::string map;
+  std::string figure;
+  bool all = false;
+};
+
+std::string statistics_factor(std::string_view unit, double& factor) {
+  factor = 1.0;
+  if (unit == "m^3/rad^3") {
+    factor = 1e6;
+    return "cm³/rad³";
+  }
+  if (unit == "m") {
+    factor = 1e6;
+    return "µm";
+  }
+  return unit == "1" ? "" : std::string(unit);
+}
+
+/// A gnuplot data block of one figure of a slice.
+std::string block(const SliceMap& map, Figure figure, const std::string& name) {
+  std::string text = "$" + name + " << EOD\n";
+  const auto& values = map.values[static_cast<size_t>(figure)];
+  for (int v = 0; v < map.nv; ++v) {
+    for (int u = 0; u < map.nu; ++u) {
+      const double value =
+          values[static_cast<size_t>(v) * static_cast<size_t>(map.nu) + static_cast<size_t>(u)];
+      text += std::isfinite(value) ? fmt::format("{:.5g} ", value) : "NaN ";
+    }
+    text += "\n";
+  }
+  return text + "EOD\n";
+}
+
+std::string outlines(const Slice& slice, const std::string& name) {
+  std::string text = "$" + name + " << EOD\n";
+  for (const Outline& outline : slice.outlines) {
+    for (const auto& point : outline)
+      text += fmt::format("{:.3f} {:.3f}\n", point[0] * kMilli, point[1] * kMilli);
+    if (!outline.empty())
+      text += fmt::format("{:.3f} {:.3f}\n\n\n", outline[0][0] * kMilli, outline[0][1] * kMilli);
+  }
+  return text + "EOD\n";
+}
+
+/// Three cuts with their condition number, and the surface, on one sheet.
+void draw(const Model& model, const Extents& extents, const DriveLimits& limits, const std::string& path) {
+  const std::string extension = path.substr(std::min(path.size(), path.rfind('.')));
+  std::string terminal;
+  if (extension == ".svg") terminal = "svg size 1000,860 font 'sans,13' background 'white'";
+  if (extension == ".png") terminal = "pngcairo size 2000,1720 fontscale 1.6 linewidth 2 background 'white'";
+  if (extension == ".pdf") terminal = "pdfcairo size 20cm,17.2cm font 'sans,10' background 'white'";
+  // gnuplot opens the file itself, and says little when it cannot.
+  write_file(path, "");
+  std::string quoted;
+  for (const char c : path) quoted += c == '\'' ? "''" : std::string(1, c);
+  std::string script = fmt::format("set terminal {}\nset output '{}'\n", terminal, quoted);
+  const char* axes = "xyz";
+  double worst = 1.0;
+  std::vector<SliceMap> maps;
+  for (const int normal : {2, 1, 0}) {
+    maps.push_back(map_slice(model.mechanism, extents, normal,
+                             extents.range[static_cast<size_t>(normal)].middle(), 161, limits));
+    for (const double value : maps.back().values[static_cast<size_t>(Figure::condition_number)]) {
+      if (std::isfinite(value)) worst = std::max(worst, value);
+    }
+  }
+  worst = std::min(worst, 50.0);
+  for (size_t i = 0; i < maps.size(); ++i) {
+    script += block(maps[i], Figure::condition_number, fmt::format("map{}", i));
+    script += outlines(maps[i].slice, fmt::format("edge{}", i));
+  }
+  const SurfaceMesh mesh = workspace_surface(model.mechanism, 16);
+  script += "$mesh << EOD\n";
+  Vector3 centre = Vector3::Zero();
+  for (const Vector3& vertex : mesh.vertices) centre += vertex / static_cast<double>(mesh.vertices.size());
+  for (const auto& triangle : mesh.triangles) {
+    // Shaded here, seen from outside: gnuplot's own lighting takes triangles from behind for dark.
+    const Vector3& a = mesh.vertices[static_cast<size_t>(triangle[0])];
+    const Vector3& b = mesh.vertices[static_cast<size_t>(triangle[1])];
+    const Vector3& c = mesh.vertices[static_cast<size_t>(triangle[2])];
+    Vector3 normal = (b - a).cross(c - a).normalized();
+    if (normal.dot(a - centre) < 0.0) normal = -normal;
+    const double shade = 0.62 + 0.38 * std::max(0.0, normal.dot(Vector3(-0.2, -0.6, 0.77)));
+    const auto channel = [&](double full) { return static_cast<int>(std::lround(full * shade)); };
+    const int colour = (channel(120.0) << 16) | (channel(166.0) << 8) | channel(245.0);
+    // A quadrilateral of two scans, of which the second is one point twice.
+    for (const int k : {0, 1, 2, 2}) {
+      const Vector3 p = mesh.vertices[static_cast<size_t>(triangle[static_cast<size_t>(k)])] * kMilli;
+      script += fmt::format("{:.2f} {:.2f} {:.2f} {}\n{}", p.x(), p.y(), p.z(), colour, k == 1 ? "\n" : "");
+    }
+    script += "\n\n";
+  }
+  script += "EOD\n";
+  std::string stops;
+  for (int i = 0; i <= 12; ++i) stops += fmt::format("{}{} '{}'", i > 0 ? ", " : "", i, map_colour(i / 12.0));
+  script += fmt::format(
+      "set multiplot layout 2,2 margins 0.08,0.95,0.08,0.92 spacing 0.13,0.12 title 'Workspace of {}: "
+      "condition number of the Jacobian on three cuts'\n"
+      "set palette defined ({})\nset cbrange [1:{:g}]\nset size ratio -1\nset grid front lc rgb '#dddddd'\nset "
+      "border lc rgb '#888888'\nset tics textcolor rgb '#444444'\nunset key\n",
+      model.description.name, stops, worst);
+  for (size_t i = 0; i < maps.size(); ++i) {
+    const SliceMap& map = maps[i];
+    const double du = map.u_range.width() / std::max(1, map.nu - 1) * kMilli;
+    const double dv = map.v_range.width() / std::max(1, map.nv - 1) * kMilli;
+    script += fmt::format(
+        "set title '{} = {:.1f} mm'\nset xlabel '{} [mm]'\nset ylabel '{} [mm]'\nset xrange [{:g}:{:g}]\nset "
+        "yrange [{:g}:{:g}]\n"
+        "plot $map{} matrix using ({:g}+$1*{:g}):({:g}+$2*{:g}):3 with image, $edge{} using 1:2 with lines lc "
+        "rgb '#222222' lw 1.2\n",
+        axes[map.slice.axis], map.slice.at * kMilli, axes[map.slice.u], axes[map.slice.v],
+        map.u_range.min * kMilli, map.u_range.max * kMilli, map.v_range.min * kMilli, map.v_range.max * kMilli,
+        i, map.u_range.min * kMilli, du, map.v_range.min * kMilli, dv, i);
+  }
+  script +=
+      "unset colorbox\nset title 'surface'\nset xlabel 'x'\nset ylabel 'y'\nunset zlabel\nunset "
+      "grid\nset autoscale\nset view 62,35\nset view equal xyz\n"
+      "set xyplane relative 0.1\nset xtics 100\nset ytics 100\nset ztics 50\nset pm3d depthorder\n"
+      "splot $mesh using 1:2:3:4 with pm3d fillcolor rgb variable\n"
+      "unset multiplot\n";
+  run_gnuplot(script);
+}
+
+int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
+  const ParsedQuantity grid = parse_quantity(arguments.grid, Dimension::length);
+  if (!grid) throw InputError(fmt::format("--grid \"{}\": {}; {}", arguments.grid, grid.rule, grid.advice));
+  if (*grid.value <= 0.0)
+    throw InputError(fmt::format("--grid \"{}\": must be positive; for example --grid 1mm", arguments.grid));
+  const bool npy = arguments.map.ends_with(".npy");
+  if (!arguments.map.empty() && !npy && !arguments.map.ends_with(".csv")) {
+    throw InputError(fmt::format("--map {}: must end in .csv or .npy", arguments.map));
+  }
+  if (!arguments.figure.empty() && !arguments.figure.ends_with(".svg") && !arguments.figure.ends_with(".png") &&
+      !arguments.figure.ends_with(".pdf")) {
+    throw InputError(fmt::format("--figure {}: must end in .svg, .png or .pdf", arguments.figure));
+  }
+  const Model model(read_device(arguments));
+  if (const auto obstacle = workspace_obstacle(model.mechanism)) {
+    throw InputError(fmt::format("{}: {}", model.description.name, *obstacle));
+  }
+  const bool driven = model.driven();
+  LatticeOptions options;
+  options.spacing = *grid.value;
+  options.all_figures = arguments.all;
+  options.limits = drive_limits(model.drives, false);
+  Effort effort;
+  effort.cancel = &stop_on_interrupt();
+  const Extents extents = workspace_extents(model.mechanism);
+  double points = 1.0;
+  for (const Interval& range : extents.range) points *= std::floor(range.width() / options.spacing) + 1.0;
+  LatticeSweep sweep;
+  {
+    Progress progress("workspace", "points");
+    std::mutex mutex;
+    effort.progress = [&](double fraction) {
+      const std::lock_guard lock(mutex);
+      progress.update(fraction * points, points);
+    };
+    try {
+      sweep = sweep_workspace(model.mechanism, options, effort);
+    } catch (const std::length_error& error) {
+      throw InputError(fmt::format("--grid {}: {}; take a coarser grid", arguments.grid, error.what()));
+    }
+  }
+  if (!arguments.map.empty() && sweep.complete) {
+    Progress progress("map", "points");
+    std::mutex mutex;
+    effort.progress = [&](double fraction) {
+      const std::lock_guard lock(mutex);
+      progress.update(fraction * points, points);
+    };
+    const WorkspaceMap map = map_workspace(model.mechanism, options, effort);
+    std::ofstream out(arguments.map, std::ios::binary);
+    npy ? write_npy(map, out) : write_csv(map, out);
+    out.close();
+    if (!out) throw MachineError(fmt::format("cannot write {}", arguments.map));
+  }
+  if (!arguments.figure.empty() && sweep.complete) draw(model, extents, options.limits, arguments.figure);
+  const WorkspaceVolume volume = sweep.complete ? workspace_volume(model.mechanism, effort) : WorkspaceVolume{};
+  const InscribedShapes inscribed = sweep.complete ? inscribed_shapes(model.mechanism) : InscribedShapes{};
+
+  Json document;
+  document["device"] = model.description.name;
+  document["grid"] = json_number(sweep.spacing);
+  document["complete"] = sweep.complete;
+  document["lattice_points"] = sweep.lattice_points;
+  document["inside"] = sweep.inside;
+  document["lattice_volume"] = json_number(sweep.volume);
+  if (sweep.complete) {
+    document["volume"] = json_number(volume.value);
+    document["volume_method"] = to_string(volume.method);
+    document["volume_error"] = json_number(volume.error_estimate);
+  }
+  Json ranges;
+  for (size_t k = 0; k < 3; ++k)
+    ranges[std::string(1, static_cast<char>('x' + k))] = json_interval(extents.range[k]);
+  document["ranges"] = ranges;
+  if (sweep.complete) {
+    document["inscribed_sphere"] = {{"centre", json_array(inscribed.sphere.centre)},
+                                    {"radius", json_number(inscribed.sphere.size)}};
+    document["inscribed_cube"] = {{"centre", json_array(inscribed.cube.centre)},
+                                  {"edge", json_number(inscribed.cube.size)}};
+  }
+  Json figures;
+  Json notes;
+  Sheet sheet(terminal);
+  std::vector<std::vector<std::string>> rows;
+  for (int k = 0; k < (arguments.all ? kFigureCount : kCoreFigureCount); ++k) {
+    const FigureInfo& info = figure_info(k);
+    const bool needs_drives = info.unit == "N" || info.unit == "m";
+    const Statistic& statistic = sweep.figures[static_cast<size_t>(k)];
+    const std::string key(info.name);
+    if (needs_drives && !driven) {
+      figures[key] = nullptr;
+      notes[key] = "some joints have no drive";
+      continue;
+    }
+    figures[key] = statistic_json(statistic);
+    if (statistic.count == 0) {
+      notes[key] = "not defined for this mechanism";
+      continue;
+    }
+    double factor = 1.0;
+    const std::string unit = statistics_factor(info.unit, factor);
+    rows.push_back({std::string(info.name), number(statistic.min * factor), number(statistic.mean * factor),
+                    number(statistic.max * factor), unit});
+    std::replace(rows.back()[0].begin(), rows.back()[0].end(), '_', ' ');
+  }
+  document["figures"] = figures;
+  if (!notes.empty()) document["notes"] = notes;
+  if (!sweep.complete) complain("stopped before the end: the figures cover a part of the workspace only");
+  if (arguments.json) {
+    print_json(document);
+    return sweep.complete ? kDone : kNo;
+  }
+  sheet.title(fmt::format("{}: workspace", model.description.name),
+              fmt::format("lattice of {}, device frame", format_quantity(sweep.spacing, Dimension::length)));
+  if (sweep.complete) {
+    sheet.row("volume", quantity(volume.value, 1e6, "cm³", 6),
+              volume.method == WorkspaceVolume::Method::integral ? "integral of |det J| over the joint ranges"
+                                                                 : "counted on a lattice");
+  }
+  sheet.row("points inside", fmt::format("{}", sweep.inside),
+            fmt::format("of {} in the box; {} by counting", sweep.lattice_points,
+                        quantity(sweep.volume, 1e6, "cm³", 6)));
+  for (size_t k = 0; k < 3; ++k) {
+    sheet.row(fmt::format("range of {}", static_cast<char>('x' + k)),
+              interval(extents.range[k].min, extents.range[k].max, kMilli, "mm"),
+              quantity(extents.range[k].width(), kMilli, "mm wide"));
+  }
+  if (sweep.complete) {
+    sheet.row("largest sphere", quantity(2.0 * inscribed.sphere.size, kMilli, "mm diameter"),
+              "centre " + point_text(inscribed.sphere.centre));
+    sheet.row("largest cube", quantity(inscribed.cube.size, kMilli, "mm edge"),
+              "centre " + point_text(inscribed.cube.centre));
+  }
+  sheet.heading("Figures over the workspace");
+  sheet.table({"", "min", "mean", "max", ""}, rows);
+  if (driven) sheet.paragraph("Forces with the continuous torque of the drives.", 2, Tint::dim);
+  if (!arguments.map.empty() && sweep.complete) sheet.paragraph("map: " + arguments.map, 2, Tint::dim);
+  if (!arguments.figure.empty() && sweep.complete) sheet.paragraph("figure: " + arguments.figure, 2, Tint::dim);
+  print(sheet.text());
+  return sweep.complete ? kDone : kNo;
+}
+
+}  // namespace
+
+void add_workspace(CLI::App& app, Context& context) {
+  CLI::App* verb =
+      add_verb(app, "workspace", "Reachable volume, ranges, inscribed shapes, and maps",
+               "  zwidth workspace delta\n"
+               "  zwidth workspace delta --grid 0.5mm --all-figures\n"
+               "  zwidth workspace delta --grid 2mm --map delta.csv         one row per point\n"
+               "  zwidth workspace delta --figure delta.pdf                 cuts and surface (needs gnuplot)\n"
+               "\nCtrl-C stops with what there is, and exits 1.");
+  auto arguments = std::make_shared<WorkspaceArguments>();
+  add_device_arguments(*verb, *arguments);
+  verb->add_option("--grid", arguments->grid, "spacing of the lattice, 1mm if not given")->type_name("LENGTH");
+  verb->add_option("--map", arguments->map, "write figures at every point inside: FILE.csv or FILE.npy")
+      ->type_name("FILE");
+  verb->add_option("--figure", arguments->figure, "draw cuts and surface: FILE.svg, .png or .pdf")
+      ->type_name("FILE");
+  verb->add_flag("--all-figures", arguments->all,
+                 "also polytope forces, resolution and distances to singularities");
+  verb->callback([arguments, &context] {
+    context.run = [arguments, &context] { return workspace(*arguments, context.terminal); };
+  });
+}
+
+}  // namespace zwidth

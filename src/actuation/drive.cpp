@@ -1,0 +1,371 @@
+#include "zwidth/actuation/drive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "zwidth/actuation/amplifier.h"
+#include "zwidth/actuation/cable.h"
+#include "zwidth/actuation/encoder.h"
+#include "zwidth/math/linear_system.h"
+
+namespace zwidth {
+namespace {
+
+using std::numbers::pi;
+
+void require(const char* quantity, double value) {
+  if (!(value > 0.0) || !std::isfinite(value)) {
+    throw InvalidDrive(std::string(quantity) + " must be positive and finite, not " + std::to_string(value));
+  }
+}
+
+std::string millimetres(double metres) {
+  return std::to_string(1e3 * metres) + " mm";
+}
+
+Capstan make_capstan(const CapstanDescription& description, const Interval& joint_range) {
+  Capstan capstan = solve_capstan(capstan_dimensions(description, joint_range));
+  if (capstan.status == CapstanStatus::invalid_argument) {
+    std::string message = "capstan: " + std::string(capstan.reason) + " (input diameter " +
+                          millimetres(description.input_diameter) + ", lead " + millimetres(description.lead) +
+                          ", cable " + millimetres(description.cable.coated_diameter) + ", output diameter " +
+                          millimetres(description.output_diameter) + ", centre distance " +
+                          millimetres(description.centre_distance);
+    if (capstan.min_centre_distance > 0.0) {
+      message += ", which must be at least " + millimetres(capstan.min_centre_distance);
+    }
+    throw InvalidDrive(message + ")");
+  }
+  require("capstan: the preload", description.preload);
+  return capstan;
+}
+
+CurrentLoop make_current_loop(const DriveDescription& description) {
+  require("the motor's resistance", description.motor.resistance);
+  require("the motor's inductance", description.motor.inductance);
+  require("the amplifier's proportional gain scale", description.amplifier.proportional_gain_scale);
+  require("the amplifier's integral gain scale", description.amplifier.integral_gain_scale);
+  const CurrentGains gains = gains_from_registers(description.proportional_gain, description.integral_gain,
+                                                  gain_scale(description.amplifier));
+  const auto loop = CurrentLoop::make(description.motor.resistance, description.motor.inductance, gains);
+  if (!loop) {
+    throw InvalidDrive("the gains of the current loop must be finite");
+  }
+  return *loop;
+}
+
+/// Adds the margin unless one side is not known.
+void add(std::vector<Margin>& margins, const char* name, double demand, double capability, const char* unit,
+         const char* rule) {
+  if (!std::isfinite(demand) || !std::isfinite(capability)) {
+    return;
+  }
+  constexpr double kRounding = 1e-9;
+  const std::optional<double> utilisation =
+      capability > 0.0 ? std::optional(demand / capability) : std::nullopt;
+  margins.push_back(
+      {name, demand, capability, unit, utilisation, demand <= capability * (1.0 + kRounding), rule});
+}
+
+}  // namespace
+
+const char* to_string(Limiter limiter) {
+  switch (limiter) {
+    case Limiter::motor:
+      return "motor";
+    case Limiter::slip:
+      return "slip";
+    case Limiter::amplifier:
+      return "amplifier";
+    case Limiter::supply:
+      return "supply voltage";
+    case Limiter::encoder:
+      return "encoder";
+  }
+  return "";
+}
+
+Drive::Drive(const DriveDescription& description, const Interval& joint_range)
+    : description_(description),
+      joint_range_(joint_range),
+      thermal_(thermal_model(description.motor)),
+      current_loop_(make_current_loop(description)) {
+  require("the motor's torque constant", description.motor.torque_constant);
+  require("the motor's nominal torque", description.motor.nominal_torque);
+  require("the motor's speed constant", description.motor.speed_constant);
+  require("the encoder's pulses per turn", description.encoder.pulses_per_turn);
+  require("the supply voltage", description.supply_voltage);
+  require("the peak factor", description.peak_factor);
+  if (const auto* capstan = std::get_if<CapstanDescription>(&description.transmission)) {
+    capstan_ = make_capstan(*capstan, joint_range);
+    ratio_ = capstan_->ratio;
+  }
+  if (description.preloader) {
+    preloader_ = Flexure::make(*description.preloader);
+    if (!preloader_) {
+      throw InvalidDrive(
+          "the preloader's lengths, width, height and elastic modulus must be positive and finite");
+    }
+  }
+  current_per_torque_ = 1.0 / (description.motor.torque_constant * ratio_);
+  angle_per_count_ = zwidth::angular_resolution(counts_per_turn(description.encoder), ratio_);
+}
+
+std::optional<Drive> Drive::try_make(const DriveDescription& description, const Interval& joint_range) {
+  try {
+    return Drive(description, joint_range);
+  } catch (const InvalidDrive&) {
+    return std::nullopt;
+  }
+}
+
+TorqueLimit Drive::torque_limit(double motor_torque, double amplifier_current) const {
+  TorqueLimit limit;
+  limit.motor = motor_torque * ratio_;
+  limit.amplifier = torque_for_current(amplifier_current);
+  limit.usable = limit.motor;
+  limit.limited_by = Limiter::motor;
+  if (limit.amplifier < limit.usable) {
+    limit.usable = limit.amplifier;
+    limit.limited_by = Limiter::amplifier;
+  }
+  if (capstan_) {
+    limit.slip = capstan_->slip_torque(std::get<CapstanDescription>(description_.transmission).preload);
+    if (*limit.slip < limit.usable) {
+      limit.usable = *limit.slip;
+      limit.limited_by = Limiter::slip;
+    }
+  }
+  return limit;
+}
+
+TorqueLimit Drive::continuous_torque() const {
+  return torque_limit(description_.motor.nominal_torque, description_.amplifier.continuous_current);
+}
+
+TorqueLimit Drive::peak_torque() const {
+  return torque_limit(description_.motor.nominal_torque * description_.peak_factor,
+                      description_.amplifier.max_current);
+}
+
+TorqueLimit Drive::stall_torque() const {
+  const Motor& motor = description_.motor;
+  const double voltage = available_voltage(description_.amplifier, description_.supply_voltage);
+  return torque_limit(zwidth::stall_torque(motor.torque_constant, motor.resistance, voltage),
+                      description_.amplifier.max_current);
+}
+
+SpeedLimit Drive::speed() const {
+  const Motor& motor = description_.motor;
+  const double voltage = available_voltage(description_.amplifier, description_.supply_voltage);
+  SpeedLimit limit;
+  limit.unloaded = std::max(0.0, motor_speed(motor, voltage, 0.0)) / ratio_;
+  limit.at_continuous_torque = std::max(0.0, motor_speed(motor, voltage, motor.nominal_torque)) / ratio_;
+  limit.usable = limit.unloaded;
+  limit.limited_by = Limiter::supply;
+  if (given(description_.encoder.max_frequency)) {
+    limit.encoder = encoder_max_speed(description_.encoder) / ratio_;
+    if (*limit.encoder < limit.usable) {
+      limit.usable = *limit.encoder;
+      limit.limited_by = Limiter::encoder;
+    }
+  }
+  return limit;
+}
+
+std::optional<double> Drive::torque_resolution() const {
+  const double step = description_.amplifier.current_resolution;
+  return given(step)
+             ? std::optional(zwidth::torque_resolution(description_.motor.torque_constant, step, ratio_))
+             : std::nullopt;
+}
+
+double Drive::angular_resolution() const {
+  return angle_per_count_;
+}
+
+double Drive::input_inertia() const {
+  return description_.motor.rotor_inertia + description_.encoder.code_wheel_inertia +
+         description_.input_inertia;
+}
+
+double Drive::reflected_inertia() const {
+  return zwidth::reflected_inertia(input_inertia(), description_.output ? description_.output->inertia : 0.0,
+                                   ratio_);
+}
+
+std::optional<double> Drive::perceived_mass() const {
+  if (!description_.output || !(description_.output->radius > 0.0)) {
+    return std::nullopt;
+  }
+  return mass_at_radius(reflected_inertia(), description_.output->radius);
+}
+
+double Drive::friction_torque() const {
+  return torque_for_current(description_.motor.no_load_current);
+}
+
+std::optional<double> Drive::cable_stiffness(double joint_angle) const {
+  if (!capstan_) {
+    return std::nullopt;
+  }
+  const auto& capstan = std::get<CapstanDescription>(description_.transmission);
+  const auto section =
+      rope_section(capstan.cable.bare_diameter, capstan.cable.strands, capstan.cable.wires_per_strand);
+  const auto length = capstan_->equivalent_cable_length(joint_angle - capstan.mid_angle);
+  if (!section || !length) {
+    return std::nullopt;
+  }
+  return zwidth::cable_stiffness(capstan.cable.elastic_modulus, section->metal_area, *length,
+                                 capstan.cable_stiffness_factor);
+}
+
+std::optional<double> Drive::joint_stiffness(double joint_angle) const {
+  const auto stiffness = cable_stiffness(joint_angle);
+  if (!stiffness) {
+    return std::nullopt;
+  }
+  const double radius = 0.5 * capstan_->output_pitch_diameter;
+  return *stiffness * radius * radius;
+}
+
+std::optional<TwoMassModel> Drive::two_mass(double joint_angle) const {
+  const auto stiffness = cable_stiffness(joint_angle);
+  if (!stiffness || !description_.output) {
+    return std::nullopt;
+  }
+  return TwoMassModel::make({.input_inertia = input_inertia(),
+                             .input_damping = equivalent_damping(description_.motor),
+                             .input_radius = 0.5 * capstan_->input_pitch_diameter,
+                             .output_inertia = description_.output->inertia,
+                             .output_radius = 0.5 * capstan_->output_pitch_diameter,
+                             .tip_radius = description_.output->radius,
+                             .contact_stiffness = description_.output->contact_stiffness,
+                             .contact_damping = description_.output->contact_damping,
+                             .cable_stiffness = *stiffness,
+                             .torque_constant = description_.motor.torque_constant});
+}
+
+void Drive::add_capstan_margins(std::vector<Margin>& margins) const {
+  const auto& capstan = std::get<CapstanDescription>(description_.transmission);
+  const Motor& motor = description_.motor;
+  const double peak = motor.nominal_torque * description_.peak_factor;
+  const CapstanLoads loads = capstan_->loads(capstan.preload, peak);
+
+  add(margins, "preload at continuous torque", capstan_->min_preload(motor.nominal_torque), capstan.preload,
+      "N", "the cable must not slip on the input pulley under the nominal motor torque (Neal 2015, eq 4.31)");
+  add(margins, "preload at peak torque", capstan_->min_preload(peak), capstan.preload, "N",
+      "the cable must not slip on the input pulley under the peak motor torque (Neal 2015, eq 4.31)");
+  add(margins, "cable tension", loads.high_tension,
+      given(capstan.cable.max_working_load) ? capstan.cable.max_working_load : capstan.cable.breaking_load, "N",
+      "the tight side under preload and peak torque must stay within the cable's load (Neal 2015, eq 4.27)");
+  add(margins, "cable bend radius", capstan.cable.min_bend_radius, 0.5 * capstan_->input_pitch_diameter, "m",
+      "the cable must not bend tighter around the input pulley than it may");
+  add(margins, "cable seat", capstan_->contact_diameter, capstan.input_diameter, "m",
+      "the cable must touch the flanks of the thread, not ride on its crests (Neal 2015, eq 4.18)");
+  add(margins, "wrap spacing", capstan.cable.coated_diameter, capstan.lead * std::cos(capstan_->cable_angle),
+      "m", "neighbouring wraps must not touch");
+  add(margins, "centre distance", capstan_->min_centre_distance, capstan.centre_distance, "m",
+      "the pulleys with their cable must not touch");
+  add(margins, "sector range", joint_range_.width(), capstan_->dimensions.output_range, "rad",
+      "the sector must carry cable for the whole range of the joint");
+  add(margins, "motor radial load", loads.bearing_radial, motor.max_radial_load, "N",
+      "the cable's pull under preload and peak torque must stay within the motor's bearings (Neal 2015, eq "
+      "4.42)");
+  add(margins, "motor axial load", loads.bearing_axial, motor.max_axial_load, "N",
+      "the cable's axial pull under peak torque must stay within the motor's bearings (Neal 2015, eq 4.41)");
+  if (preloader_) {
+    add(margins, "flexure stress", preloader_->bending_stress(capstan.preload),
+        description_.preloader->material.yield_strength, "Pa",
+        "the preloader must not yield under the preload (Neal 2015, eq 4.63)");
+  }
+}
+
+std::vector<Margin> Drive::margins() const {
+  const Motor& motor = description_.motor;
+  const Amplifier& amplifier = description_.amplifier;
+  std::vector<Margin> margins;
+  add(margins, "continuous current", motor.nominal_current, amplifier.continuous_current, "A",
+      "the amplifier must hold the motor's nominal current");
+  add(margins, "peak current", motor.nominal_torque * description_.peak_factor / motor.torque_constant,
+      amplifier.max_current, "A", "the amplifier must give the current of the peak torque");
+  if (thermal_) {
+    add(margins, "winding heat", motor.nominal_current, thermal_->continuous_current(), "A",
+        "the nominal current must not overheat the winding in a room of 25 degrees Celsius");
+  }
+  add(margins, "supply voltage", description_.supply_voltage, amplifier.max_supply_voltage, "V",
+      "the supply must not exceed what the amplifier takes");
+  add(margins, "least supply voltage", amplifier.min_supply_voltage, description_.supply_voltage, "V",
+      "the supply must suffice for the amplifier");
+  add(margins, "encoder frequency",
+      speed().unloaded * ratio_ / (2.0 * pi) * description_.encoder.pulses_per_turn,
+      description_.encoder.max_frequency, "Hz",
+      "the encoder must follow the fastest the motor can turn at the available voltage, unloaded");
+  if (capstan_) {
+    add_capstan_margins(margins);
+  }
+  return margins;
+}
+
+std::vector<DriveFigure> Drive::figures() const {
+  std::vector<DriveFigure> figures;
+  const auto put = [&](const char* key, const char* name, std::optional<double> value, const char* unit) {
+    if (value && std::isfinite(*value)) {
+      figures.push_back({key, name, *value, unit});
+    }
+  };
+  put("ratio", "ratio", ratio_, "");
+  put("continuous_torque", "continuous torque", continuous_torque().usable, "N m");
+  put("peak_torque", "peak torque", peak_torque().usable, "N m");
+  put("stall_torque", "stall torque", stall_torque().usable, "N m");
+  put("slip_torque", "torque at which the cable slips", continuous_torque().slip, "N m");
+  put("friction_torque", "friction of the motor", friction_torque(), "N m");
+  put("torque_resolution", "torque step", torque_resolution(), "N m");
+  put("angular_resolution", "angle step", angular_resolution(), "rad");
+  put("max_speed", "largest speed", speed().usable, "rad/s");
+  put("reflected_inertia", "reflected inertia", reflected_inertia(), "kg m^2");
+  put("perceived_mass", "perceived mass", perceived_mass(), "kg");
+  put("equivalent_damping", "damping of the motor", equivalent_damping(description_.motor), "N m s/rad");
+  put("mechanical_time_constant", "mechanical time constant", mechanical_time_constant(description_.motor),
+      "s");
+  put("electrical_time_constant", "electrical time constant", electrical_time_constant(description_.motor),
+      "s");
+  put("current_loop_bandwidth", "current loop bandwidth (-3 dB)", current_loop_.bandwidth(), "Hz");
+  put("current_loop_damping", "current loop damping ratio", current_loop_.damping_ratio(), "");
+  if (capstan_) {
+    const auto& capstan = std::get<CapstanDescription>(description_.transmission);
+    put("preload", "cable preload", capstan.preload, "N");
+    put("min_preload", "least preload at continuous torque",
+        capstan_->min_preload(description_.motor.nominal_torque), "N");
+    put("cable_length", "cable length", capstan_->cable_length, "m");
+    put("cable_stiffness", "cable stiffness at joint angle zero", cable_stiffness(0.0), "N/m");
+    put("joint_stiffness", "stiffness felt at the joint, angle zero", joint_stiffness(0.0), "N m/rad");
+    if (preloader_) {
+      put("preloader_stiffness", "preloader stiffness", preloader_->stiffness(), "N/m");
+      put("preloader_deflection", "preloader deflection under the preload",
+          capstan.preload / preloader_->stiffness(), "m");
+    }
+  }
+  if (const auto model = two_mass()) {
+    const GainPeak resonance = model->resonance();
+    put("force_per_current", "tip force per current", model->dc_gain()[TwoMassModel::tip_force], "N/A");
+    if (resonance.is_resonance) {
+      put("resonance_frequency", "resonance", resonance.frequency, "Hz");
+      put("resonance_peak", "resonance over static", model->resonance_peak(), "dB");
+    }
+    put("force_bandwidth", "force bandwidth (-3 dB)", model->bandwidth(), "Hz");
+  }
+  if (thermal_) {
+    put("thermal_continuous_current", "current that the winding bears for ever", thermal_->continuous_current(),
+        "A");
+    const double peak_current =
+        description_.motor.nominal_torque * description_.peak_factor / description_.motor.torque_constant;
+    put("time_at_peak", "time to overheat at peak torque, from cold", thermal_->time_to_overheat(peak_current),
+        "s");
+  }
+  return figures;
+}
+
+}  // namespace zwidth

@@ -1,0 +1,306 @@
+#include "zwidth/analysis/data_sheet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "zwidth/analysis/internal/probe.h"
+#include "zwidth/mechanism/jacobian.h"
+
+namespace zwidth {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::vector<std::string> driven_joints(const DriveDescription& drive, const Mechanism& mechanism) {
+  return drive.joints.empty() ? mechanism.active_names() : drive.joints;
+}
+
+int joint_index(const Mechanism& mechanism, const std::string& name) {
+  const auto& names = mechanism.active_names();
+  return static_cast<int>(std::ranges::find(names, name) - names.begin());
+}
+
+std::vector<GeometryEntry> geometry_of(const DeltaDescription& delta) {
+  return {{"base_radius", "base radius", "d1", delta.base_radius, "m"},
+          {"upper_arm", "upper arm", "d2", delta.upper_arm, "m"},
+          {"forearm", "forearm", "d3", delta.forearm, "m"},
+          {"platform_radius", "platform radius", "d4", delta.platform_radius, "m"},
+          {"joint_range_min", "joint range from", "theta_min", delta.joint_range.min, "rad"},
+          {"joint_range_max", "joint range to", "theta_max", delta.joint_range.max, "rad"}};
+}
+
+std::vector<GeometryEntry> geometry_of(const LegsDescription& legs) {
+  std::vector<GeometryEntry> entries = {{"legs", "legs", "", static_cast<double>(legs.legs.size()), ""}};
+  double joints = 0.0;
+  for (const LegDescription& leg : legs.legs) joints += static_cast<double>(leg.joints.size());
+  entries.push_back({"joints", "joints", "", joints, ""});
+  return entries;
+}
+
+// One torque limit per joint; only called where every joint has a drive.
+ActiveVector torques(const std::vector<std::optional<Drive>>& drives, bool peak) {
+  ActiveVector torque(static_cast<Eigen::Index>(drives.size()));
+  for (std::size_t j = 0; j < drives.size(); ++j) {
+    torque[static_cast<Eigen::Index>(j)] =
+        (peak ? drives[j]->peak_torque() : drives[j]->continuous_torque()).usable;
+  }
+  return torque;
+}
+
+ForceSheet force_sheet(const LatticeSweep& sweep, const std::vector<std::optional<Drive>>& drives, bool peak) {
+  ForceSheet sheet;
+  sheet.torque = torques(drives, peak);
+  const int first = static_cast<int>(Figure::force_x);
+  for (int axis = 0; axis < 3; ++axis) sheet.axes[axis] = sweep.figures[first + axis];
+  sheet.weakest = sweep[Figure::weakest_force];
+  sheet.strongest = sweep[Figure::strongest_force];
+  for (const auto& drive : drives) {
+    const std::string limiter =
+        to_string((peak ? drive->peak_torque() : drive->continuous_torque()).limited_by);
+    sheet.limited_by = sheet.limited_by.empty() || sheet.limited_by == limiter ? limiter : "various";
+  }
+  return sheet;
+}
+
+void scale(Statistic& statistic, double factor) {
+  statistic.min *= factor;
+  statistic.max *= factor;
+  statistic.mean *= factor;
+}
+
+ActuatorResponse response_of(const TwoMassModel& model, const DataSheetOptions& options) {
+  ActuatorResponse response;
+  response.dc_gain = model.dc_gain()[TwoMassModel::tip_force];
+  response.resonance = model.resonance(options.max_frequency);
+  response.resonance_peak = model.resonance_peak(options.max_frequency);
+  response.bandwidth = model.bandwidth(3.0, options.max_frequency);
+  response.cable_stiffness = model.parameters().cable_stiffness;
+  response.step_current = options.step_current;
+  if (options.frequency_points < 2) return response;
+
+  constexpr double kFirstFrequency = 1.0;  // [Hz]
+  double turns = 0.0, before = 0.0;
+  for (int n = 0; n < options.frequency_points; ++n) {
+    const double f = kFirstFrequency * std::pow(options.max_frequency / kFirstFrequency,
+                                                static_cast<double>(n) / (options.frequency_points - 1));
+    const std::complex<double> gain = model.frequency_response(f);
+    const double phase = std::arg(gain);
+    if (n > 0 && phase - before > std::numbers::pi) turns -= 1.0;
+    if (n > 0 && phase - before < -std::numbers::pi) turns += 1.0;
+    before = phase;
+    response.frequency.push_back(f);
+    response.magnitude.push_back(std::abs(gain));
+    response.phase.push_back(phase + kTurn * turns);
+  }
+  const int samples = 501;
+  const double period = options.step_duration / (samples - 1);
+  response.step_force = model.step_force(options.step_current, period, samples);
+  for (int n = 0; n < samples; ++n) response.step_time.push_back(n * period);
+  const double target = response.dc_gain * options.step_current;
+  if (target != 0.0) response.step = step_metrics(response.step_force, target);
+  return response;
+}
+
+DriveSheet drive_sheet(const DriveDescription& description, const Mechanism& mechanism,
+                       const DataSheetOptions& options) {
+  std::vector<std::string> joints = driven_joints(description, mechanism);
+  const int first = joint_index(mechanism, joints.front());
+  DriveSheet sheet{.joints = std::move(joints), .drive = Drive(description, mechanism.active_range(first))};
+  const Drive& drive = sheet.drive;
+  sheet.margins = drive.margins();
+  sheet.figures = drive.figures();
+  sheet.continuous = drive.continuous_torque();
+  sheet.peak = drive.peak_torque();
+  sheet.stall = drive.stall_torque();
+  sheet.speed = drive.speed();
+  sheet.current_loop_bandwidth = drive.current_loop().bandwidth();
+  if (description.amplifier.current_loop_rate > 0.0 && drive.current_loop().is_stable()) {
+    sheet.current_step_period = 1.0 / description.amplifier.current_loop_rate;
+    sheet.current_step = drive.current_loop().step(sheet.current_step_period, 31);
+  }
+  if (const std::optional<TwoMassModel> model = drive.two_mass()) sheet.response = response_of(*model, options);
+  return sheet;
+}
+
+bool has_mass(const Mechanism& mechanism) {
+  double mass = mechanism.drive_inertia().size() > 0 ? mechanism.drive_inertia().sum() : 0.0;
+  for (const BodyModel& body : mechanism.bodies()) mass += body.mass;
+  return mass > 0.0;
+}
+
+std::optional<PostureSheet> middle_posture(const Mechanism& mechanism, const DataSheet& sheet,
+                                           const std::vector<std::optional<Drive>>& drives, bool driven) {
+  ActiveVector active(mechanism.active_count());
+  for (int j = 0; j < active.size(); ++j) active[j] = mechanism.active_range(j).middle();
+  const Solution solution = solve_forward(mechanism, active);
+  if (!solution) return std::nullopt;
+  const Posture& posture = *solution.posture;
+  const Rates rate = rates(posture);
+  const Jacobian J = rate.tool.topRows(3);
+
+  PostureSheet middle;
+  middle.active = active;
+  middle.position = posture.tool().position;
+  middle.jacobian = J;
+  const Dexterity dexterous = dexterity(J);
+  middle.condition_number = dexterous.condition_number;
+  middle.manipulability = dexterous.manipulability;
+  middle.gravity_torques = gravity_torques(posture, rate);
+  if (has_mass(mechanism)) middle.apparent_mass = apparent_mass(cartesian_mass(J, mass_matrix(posture, rate)));
+  if (driven) {
+    middle.continuous_forces = force_polytope(J, torques(drives, false));
+    middle.peak_forces = force_polytope(J, torques(drives, true));
+    middle.tool_resolution = tool_resolution(J, sheet.joint_resolution);
+    if (sheet.torque_resolution.minCoeff() > 0.0) {
+      middle.force_resolution = force_resolution(J, sheet.torque_resolution);
+    }
+  }
+  return middle;
+}
+
+void add_drive_warnings(DataSheet& sheet) {
+  for (const DriveSheet& drive : sheet.drives) {
+    for (const Margin& margin : drive.margins) {
+      if (margin.ok) continue;
+      sheet.warnings.push_back("Drive of " + joined(drive.joints) + ": " + margin.name +
+                               " breaks its rule: " + margin.rule + ".");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::optional<Drive>> joint_drives(const Description& description, const Mechanism& mechanism) {
+  std::vector<std::optional<Drive>> drives(static_cast<std::size_t>(mechanism.active_count()));
+  for (const DriveDescription& drive : description.drives) {
+    for (const std::string& name : driven_joints(drive, mechanism)) {
+      const int j = joint_index(mechanism, name);
+      if (j < mechanism.active_count())
+        drives[static_cast<std::size_t>(j)].emplace(drive, mechanism.active_range(j));
+    }
+  }
+  return drives;
+}
+
+Mechanism mechanism_with_drives(const Description& description) {
+  Mechanism mechanism(description);
+  ActiveVector inertia = ActiveVector::Zero(mechanism.active_count());
+  const auto drives = joint_drives(description, mechanism);
+  for (std::size_t j = 0; j < drives.size(); ++j) {
+    if (drives[j]) inertia[static_cast<Eigen::Index>(j)] = drives[j]->reflected_inertia();
+  }
+  mechanism.set_drive_inertia(inertia);
+  return mechanism;
+}
+
+DriveLimits drive_limits(const std::vector<std::optional<Drive>>& drives, bool peak) {
+  DriveLimits limits;
+  for (std::size_t j = 0; j < drives.size(); ++j) {
+    if (!drives[j]) continue;
+    const auto at = static_cast<Eigen::Index>(j);
+    limits.torque[at] = (peak ? drives[j]->peak_torque() : drives[j]->continuous_torque()).usable;
+    limits.step[at] = drives[j]->angular_resolution();
+  }
+  return limits;
+}
+
+DataSheet data_sheet(const Description& description, const DataSheetOptions& options) {
+  const Mechanism mechanism = mechanism_with_drives(description);
+  const std::vector<std::optional<Drive>> drives = joint_drives(description, mechanism);
+  const bool driven = std::ranges::all_of(drives, [](const auto& drive) { return drive.has_value(); });
+
+  DataSheet sheet;
+  sheet.name = description.name;
+  sheet.title = description.title;
+  sheet.source = description.source;
+  sheet.mechanism_type = std::holds_alternative<DeltaDescription>(description.mechanism) ? "delta" : "legs";
+  sheet.active_joints = mechanism.active_count();
+  sheet.tool_freedoms = mechanism.tool_rows();
+  sheet.joint_names = mechanism.active_names();
+  for (int j = 0; j < mechanism.active_count(); ++j) sheet.joint_ranges.push_back(mechanism.active_range(j));
+  sheet.geometry = std::visit([](const auto& given) { return geometry_of(given); }, description.mechanism);
+  for (const BodyModel& body : mechanism.bodies()) sheet.moving_mass += body.mass;
+
+  sheet.joint_resolution = sheet.torque_resolution = ActiveVector::Zero(mechanism.active_count());
+  for (std::size_t j = 0; j < drives.size(); ++j) {
+    if (!drives[j]) continue;
+    sheet.joint_resolution[static_cast<Eigen::Index>(j)] = drives[j]->angular_resolution();
+    sheet.torque_resolution[static_cast<Eigen::Index>(j)] = drives[j]->torque_resolution().value_or(0.0);
+  }
+  for (const DriveDescription& drive : description.drives) {
+    sheet.drives.push_back(drive_sheet(drive, mechanism, options));
+  }
+  if (!driven)
+    sheet.warnings.push_back("Not every active joint has a drive: forces and resolution are left out.");
+  add_drive_warnings(sheet);
+
+  if (const std::optional<std::string> obstacle = workspace_obstacle(mechanism)) {
+    sheet.warnings.push_back("The workspace of this mechanism is left out: " + *obstacle + ".");
+    return sheet;
+  }
+
+  const bool batch = mechanism.delta().has_value();
+  const double spacing = batch ? options.spacing : std::max(options.spacing, options.general_spacing);
+  const double inertia_spacing =
+      batch ? options.inertia_spacing : std::max(options.inertia_spacing, options.general_spacing);
+  const DriveLimits limits = drive_limits(drives, false);
+
+  WorkspaceSheet workspace;
+  workspace.sweep =
+      sweep_workspace(mechanism, {.spacing = spacing, .limits = limits, .all_figures = true}, options.effort);
+  sheet.complete = workspace.sweep.complete;
+  workspace.extents = workspace_extents(mechanism);
+  workspace.volume = workspace_volume(mechanism, {.threads = options.effort.threads});
+  workspace.inscribed = inscribed_shapes(mechanism);
+  for (int axis = 0; axis < 3 && options.slice_points > 1; ++axis) {
+    workspace.slices[axis] = map_slice(mechanism, workspace.extents, axis,
+                                       workspace.extents.range[axis].middle(), options.slice_points, limits);
+  }
+  if (options.surface_divisions > 0)
+    workspace.surface = workspace_surface(mechanism, options.surface_divisions);
+  if (workspace.sweep.inside == 0) {
+    sheet.warnings.push_back("No point of the workspace lattice can be reached: is the spacing too wide?");
+  }
+  if (workspace.volume.method == WorkspaceVolume::Method::lattice) {
+    sheet.warnings.push_back(
+        "The joint ranges hold postures that the loops cannot take or where a singularity is passed: the "
+        "volume is "
+        "counted on a lattice.");
+  }
+
+  if (driven) {
+    sheet.continuous = force_sheet(workspace.sweep, drives, false);
+    // Forces are proportional to the torques, so equal ratios of peak to continuous torque need no second
+    // sweep.
+    const ActiveVector ratio = torques(drives, true).cwiseQuotient(torques(drives, false));
+    if (ratio.maxCoeff() - ratio.minCoeff() <= 1e-12 * ratio.maxCoeff()) {
+      sheet.peak = force_sheet(workspace.sweep, drives, true);
+      for (Statistic& axis : sheet.peak->axes) scale(axis, ratio[0]);
+      scale(sheet.peak->weakest, ratio[0]);
+      scale(sheet.peak->strongest, ratio[0]);
+    } else {
+      const LatticeOptions peak{.spacing = spacing, .limits = drive_limits(drives, true), .all_figures = true};
+      sheet.peak = force_sheet(sweep_workspace(mechanism, peak, options.effort), drives, true);
+    }
+    const int first = static_cast<int>(Figure::step_x);
+    for (int axis = 0; axis < 3; ++axis) sheet.resolution[axis] = workspace.sweep.figures[first + axis];
+  }
+  if (has_mass(mechanism)) {
+    sheet.inertia = sweep_inertia(mechanism, inertia_spacing,
+                                  {.threads = options.effort.threads, .cancel = options.effort.cancel});
+    sheet.complete = sheet.complete && sheet.inertia->complete;
+  }
+  sheet.workspace = std::move(workspace);
+  sheet.middle = middle_posture(mechanism, sheet, drives, driven);
+  if (!sheet.middle) sheet.warnings.push_back("The loops do not close in the middle of the joint ranges.");
+  return sheet;
+}
+
+}  // namespace zwidth

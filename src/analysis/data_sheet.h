@@ -1,0 +1,148 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "zwidth/actuation/drive.h"
+#include "zwidth/analysis/force.h"
+#include "zwidth/analysis/inertia.h"
+#include "zwidth/analysis/resolution.h"
+#include "zwidth/analysis/workspace.h"
+#include "zwidth/description/description.h"
+
+/// Everything that can be said about a device from its description: plain structs, to be printed, drawn or
+/// written as JSON elsewhere.
+
+namespace zwidth {
+
+struct DataSheetOptions {
+  double spacing = 1e-3;          ///< of the workspace lattice for kinematic figures [m]
+  double inertia_spacing = 5e-3;  ///< of the lattice for inertia, which costs more per point [m]
+  double general_spacing = 8e-3;  ///< least spacing of both lattices for mechanisms without batch kernels [m]
+  int slice_points = 121;      ///< grid points along the longer side of a map on a plane; 0 leaves the maps out
+  int surface_divisions = 24;  ///< of each edge of the joint ranges in the surface mesh; 0 leaves it out
+  double max_frequency =
+      2000.0;                   ///< of the sampled frequency response, and of the search for its resonance [Hz]
+  int frequency_points = 400;   ///< spaced by equal ratios; 0 leaves the sampled responses out
+  double step_duration = 0.05;  ///< of the sampled step response [s]
+  double step_current = 1.0;    ///< [A]
+  Effort effort;
+};
+
+/// Axis forces and force polytopes over the workspace, with one set of torque limits.
+struct ForceSheet {
+  ActiveVector torque;            ///< limit of each active joint [N m]
+  std::array<Statistic, 3> axes;  ///< largest pure force along x, y, z [N]
+  Statistic weakest;              ///< force available in every direction [N]
+  Statistic strongest;            ///< largest force in any direction [N]
+  std::string limited_by;         ///< "motor", "slip", ...; "various" if the joints differ
+};
+
+/// The posture in the middle of the joint ranges, looked at closely.
+struct PostureSheet {
+  ActiveVector active;                 ///< [rad]
+  Vector3 position = Vector3::Zero();  ///< [m]
+  Matrix3 jacobian = Matrix3::Zero();  ///< [m/rad]
+  double condition_number = 0.0;
+  double manipulability = 0.0;  ///< [m^3/rad^3]
+  std::optional<ForcePolytope> continuous_forces;
+  std::optional<ForcePolytope> peak_forces;
+  ActiveVector gravity_torques;               ///< [N m]; zero without bodies
+  std::optional<ApparentMass> apparent_mass;  ///< empty if nothing has mass
+  std::optional<Vector3> tool_resolution;     ///< worst-case step per axis [m]
+  std::optional<Vector3> force_resolution;    ///< worst-case step per axis [N]; empty if a drive's is not given
+};
+
+/// Sampled responses of the two-mass actuator model, tip force to motor current.
+struct ActuatorResponse {
+  double dc_gain = 0.0;             ///< [N/A]
+  GainPeak resonance;               ///< [Hz], [N/A]
+  double resonance_peak = 0.0;      ///< over the static gain [dB]
+  std::optional<double> bandwidth;  ///< -3 dB, above the resonance [Hz]
+  double cable_stiffness = 0.0;     ///< k1 [N/m]
+  std::vector<double> frequency;    ///< [Hz]
+  std::vector<double> magnitude;    ///< [N/A]
+  std::vector<double> phase;        ///< unwrapped, from 0 downwards [rad]
+  double step_current = 0.0;        ///< [A]
+  std::vector<double> step_time;    ///< [s]
+  std::vector<double> step_force;   ///< [N]
+  StepMetrics step;                 ///< of the sampled step, in samples
+};
+
+/// One drive of the device, and all joints that have it.
+struct DriveSheet {
+  std::vector<std::string> joints;  ///< active joints that it moves
+  Drive drive;                      ///< torque limits, speed, margins, figures: ask it
+  std::vector<Margin> margins;
+  std::vector<DriveFigure> figures;
+  TorqueLimit continuous, peak, stall;
+  SpeedLimit speed;
+  std::optional<double> current_loop_bandwidth;  ///< -3 dB [Hz]
+  std::vector<double> current_step;              ///< unit step samples of the current loop
+  double current_step_period = 0.0;              ///< [s]
+  std::optional<ActuatorResponse> response;      ///< joint angle zero; empty without a capstan or an output
+};
+
+struct GeometryEntry {
+  std::string key;     ///< "base_radius"
+  std::string name;    ///< "base radius"
+  std::string symbol;  ///< of the source, may be empty
+  double value = 0.0;
+  std::string unit;  ///< SI
+};
+
+/// What a mechanism with three translations can reach and do.
+struct WorkspaceSheet {
+  LatticeSweep sweep;  ///< with the continuous torque limits, all figures
+  Extents extents;
+  WorkspaceVolume volume;
+  InscribedShapes inscribed;
+  std::array<SliceMap, 3> slices;  ///< planes normal to x, y and z through the middle of the extents
+  SurfaceMesh surface;
+};
+
+struct DataSheet {
+  // Identity
+  std::string name;
+  std::string title;
+  std::string source;
+  std::string mechanism_type;  ///< "delta", "legs"
+  int active_joints = 0;
+  int tool_freedoms = 0;                 ///< 3 or 6
+  std::vector<std::string> joint_names;  ///< of the active joints
+  std::vector<Interval> joint_ranges;    ///< [rad]
+  std::vector<GeometryEntry> geometry;
+  double moving_mass = 0.0;  ///< of all bodies [kg]
+
+  std::optional<WorkspaceSheet> workspace;  ///< empty for mechanisms that `workspace_obstacle` refuses
+  std::optional<ForceSheet> continuous;     ///< empty without drives on every joint, or without workspace
+  std::optional<ForceSheet> peak;
+  std::optional<InertiaSweep> inertia;  ///< empty if nothing has mass
+  std::optional<PostureSheet> middle;   ///< empty if the middle of the joint ranges does not close
+  /// Worst-case tool step per axis over the workspace [m]; counts are 0 without encoders.
+  std::array<Statistic, 3> resolution;
+  ActiveVector joint_resolution;   ///< angle of one count, per active joint [rad]; 0 without a drive
+  ActiveVector torque_resolution;  ///< torque of one current step, per active joint [N m]; 0 if not given
+
+  std::vector<DriveSheet> drives;     ///< in the order of the description
+  std::vector<std::string> warnings;  ///< sentences for a person: failed margins, what could not be computed
+  bool complete = true;               ///< false if it was cancelled
+};
+
+/// REQUIRES: `validate(description)` finds nothing. Throws InvalidDrive as `Drive` does.
+DataSheet data_sheet(const Description& description, const DataSheetOptions& options = {});
+
+/// The mechanism of a description with the inertia of its drives on it, as every dynamic figure needs it.
+/// Throws InvalidDrive.
+Mechanism mechanism_with_drives(const Description& description);
+
+/// One drive per active joint, in order, where the description gives one. Throws InvalidDrive.
+std::vector<std::optional<Drive>> joint_drives(const Description& description, const Mechanism& mechanism);
+
+/// Torque limits and joint resolutions for the figures; `peak` takes the short-time torque. Joints without a
+/// drive get torque 1 and step 0. REQUIRES: three active joints.
+DriveLimits drive_limits(const std::vector<std::optional<Drive>>& drives, bool peak);
+
+}  // namespace zwidth

@@ -1,0 +1,163 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "zwidth/mechanism/figure.h"
+#include "zwidth/mechanism/mechanism.h"
+
+/// The reachable workspace of a mechanism with three active joints and a platform that only translates: the
+/// tool positions whose inverse, on the device's own branch, lies within the joint ranges. All coordinates in
+/// the base frame.
+///
+/// A delta goes through the batch kernels; any other mechanism through `solve_inverse`, point after point.
+
+namespace zwidth {
+
+/// Why the functions below cannot answer for this mechanism, as a phrase; nothing if they can.
+std::optional<std::string> workspace_obstacle(const Mechanism& mechanism);
+
+/// How to do long work.
+struct Effort {
+  int threads = 0;  ///< at most this many; 0 uses all cores, and more than all are not used
+  std::function<void(double fraction)>
+      progress;                               ///< called now and then with 0..1, from any thread, never at once
+  const std::atomic<bool>* cancel = nullptr;  ///< set it to stop early
+};
+
+/// Minimum, maximum and mean of a figure over lattice points. `count` 0: not computed, or not defined for this
+/// mechanism.
+struct Statistic {
+  std::int64_t count = 0;
+  double min = 0.0;
+  double max = 0.0;
+  double mean = 0.0;
+  Vector3 min_at = Vector3::Zero();  ///< tool position of the minimum [m]
+  Vector3 max_at = Vector3::Zero();  ///< [m]
+};
+
+// ------------------------------------------------------------------------------------------ lattice sweep
+
+struct LatticeOptions {
+  double spacing = 1e-3;     ///< h [m]; the lattice is the integer multiples of h in the base frame
+  DriveLimits limits;        ///< torque limits and joint resolutions of the figures
+  bool all_figures = false;  ///< also those beyond kCoreFigureCount
+};
+
+/// A sweep of the workspace, reduced as it goes. The same for any number of threads, to the last bit.
+struct LatticeSweep {
+  double spacing = 0.0;              ///< [m]
+  bool complete = true;              ///< false if it was cancelled: figures then cover only a part
+  std::int64_t lattice_points = 0;   ///< of the bounding box of the workspace
+  std::int64_t inside = 0;           ///< lattice points in the workspace
+  double volume = 0.0;               ///< inside x h^3 [m^3]
+  std::array<Interval, 3> bounds{};  ///< of the lattice points inside [m]
+  std::array<Statistic, kFigureCount> figures;
+
+  const Statistic& operator[](Figure figure) const { return figures[static_cast<int>(figure)]; }
+};
+
+/// REQUIRES: !workspace_obstacle(mechanism), spacing > 0. Throws std::length_error if a box around the reach
+/// has more than 10^12 lattice points.
+LatticeSweep sweep_workspace(const Mechanism& mechanism, const LatticeOptions& options,
+                             const Effort& effort = {});
+
+/// The map itself: one row per lattice point inside.
+struct WorkspaceMap {
+  double spacing = 0.0;  ///< [m]
+  bool complete = true;
+  int defined_figures = 0;            ///< figures 0 .. defined_figures - 1 were asked for and are defined
+  std::vector<Vector3> positions;     ///< by x, then y, then z, ascending [m]
+  std::vector<FigureValues> figures;  ///< of each position
+
+  /// "x", "y", "z" and the names of the defined figures.
+  std::vector<std::string> columns() const;
+};
+WorkspaceMap map_workspace(const Mechanism& mechanism, const LatticeOptions& options,
+                           const Effort& effort = {});
+
+/// A line of column names, then one line per point; SI.
+void write_csv(const WorkspaceMap& map, std::ostream& out);
+/// NumPy .npy, version 1.0: little-endian float64, shape (points, columns), C order.
+void write_npy(const WorkspaceMap& map, std::ostream& out);
+
+// ------------------------------------------------------------------------------------ continuous figures
+
+/// Ends of the workspace along each axis: not those of a grid, but of the workspace itself.
+struct Extents {
+  std::array<Interval, 3> range{};                 ///< [m]
+  std::array<std::array<Vector3, 2>, 3> at{};      ///< [axis][0 min, 1 max]: tool position there [m]
+  std::array<std::array<Vector3, 2>, 3> joints{};  ///< active joints there [rad]
+  Vector3 size() const { return {range[0].width(), range[1].width(), range[2].width()}; }
+};
+Extents workspace_extents(const Mechanism& mechanism);
+
+struct WorkspaceVolume {
+  enum class Method {
+    integral,  ///< of |det J| over the joint ranges
+    lattice,   ///< counted, because det J changes sign or some joint values do not close
+  };
+  Method method = Method::integral;
+  double value = 0.0;           ///< [m^3]
+  double error_estimate = 0.0;  ///< [m^3]
+  int order = 0;                ///< Gauss-Legendre points per axis; 0 for the lattice
+  double spacing = 0.0;         ///< of the lattice [m]; 0 for the integral
+};
+const char* to_string(WorkspaceVolume::Method method);
+WorkspaceVolume workspace_volume(const Mechanism& mechanism, const Effort& effort = {});
+
+/// The largest sphere, or axis-aligned cube, that lies in the workspace.
+struct InscribedShape {
+  Vector3 centre = Vector3::Zero();  ///< [m]
+  double size = 0.0;                 ///< radius of the sphere, edge of the cube [m]
+  double volume = 0.0;               ///< [m^3]
+};
+struct InscribedShapes {
+  InscribedShape sphere;
+  InscribedShape cube;
+};
+/// Centre and size to some 1e-7 of the size, from inside, as long as the workspace has no holes finer than 1/24
+/// of it.
+InscribedShapes inscribed_shapes(const Mechanism& mechanism);
+
+// ------------------------------------------------------------------------------------------- for figures
+
+/// A closed line in a plane, first point not repeated.
+using Outline = std::vector<std::array<double, 2>>;
+
+/// The workspace cut by a plane.
+struct Slice {
+  int axis = 2;                   ///< normal of the plane: 0 x, 1 y, 2 z
+  double at = 0.0;                ///< its coordinate [m]
+  int u = 0, v = 1;               ///< axes of the plane
+  std::vector<Outline> outlines;  ///< [m]; points lie on the boundary within 1e-6 m
+  double area = 0.0;              ///< enclosed, holes taken off [m^2]
+};
+
+/// Figures on a plane, on a grid of nu x nv points. Values are NaN outside the workspace.
+struct SliceMap {
+  Slice slice;
+  int nu = 0, nv = 0;
+  Interval u_range, v_range;                               ///< of the grid points [m]
+  std::array<std::vector<double>, kFigureCount> values{};  ///< [figure][iv * nu + iu]
+};
+/// `points` grid points along the longer side of the plane.
+SliceMap map_slice(const Mechanism& mechanism, const Extents& extents, int axis, double at, int points,
+                   const DriveLimits& limits);
+
+/// The boundary of the workspace as triangles: the image of the faces of the joint ranges.
+struct SurfaceMesh {
+  std::vector<Vector3> vertices;              ///< [m]
+  std::vector<std::array<int, 3>> triangles;  ///< vertex indices
+  std::vector<int> face;  ///< of each triangle: 2 j for joint j at its minimum, 2 j + 1 at its maximum
+};
+/// n + 1 vertices along each edge of a face.
+SurfaceMesh workspace_surface(const Mechanism& mechanism, int n);
+
+}  // namespace zwidth

@@ -1,0 +1,201 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "zwidth/description/parts.h"
+#include "zwidth/math/spatial.h"
+
+/// A device as data: what `devices/*.toml` says, in SI units and radians, with its parts looked up.
+/// No behaviour lives here. `read_description` makes one, `validate` lists what is wrong with one,
+/// `write_description` prints one; `Mechanism` and `Drive` are built from one.
+
+namespace zwidth {
+
+inline constexpr double kStandardGravity = 9.80665;  ///< [m/s^2]
+
+/// Where single values of a table come from, by key, when that is not the table's own source.
+using Sources = std::map<std::string, std::string>;
+
+// ---------------------------------------------------------------------------------------------- mechanism
+
+/// A delta of three equal legs at azimuths 90, 210 and 330 deg about +z (Neal 2015, appendix A).
+/// Base frame: origin in the plane of the three actuator axes, z up, y towards leg 1.
+struct DeltaDescription {
+  double base_radius = 0.0;      ///< d1, radius of the actuator axes [m]
+  double upper_arm = 0.0;        ///< d2, length of the driven link [m]
+  double forearm = 0.0;          ///< d3, length of the parallelogram [m]
+  double platform_radius = 0.0;  ///< d4, radius of the joints on the platform [m]
+  Interval joint_range;  ///< of every driven joint [rad]; 0 is horizontal outwards, positive lifts the elbow
+  std::string source;    ///< where the values come from; "chosen: ..." where no source gives them
+  Sources sources = {};
+
+  bool operator==(const DeltaDescription&) const = default;
+};
+
+enum class JointType {
+  revolute,       ///< turns the following links about the axis
+  prismatic,      ///< slides the following links along the axis
+  parallelogram,  ///< swings the following links about the axis on parallel bars: they translate on a circle
+};
+
+/// One joint of a leg, given in the base frame at the leg's zero posture, in which all its joints are zero
+/// and every link frame is parallel to the base frame. (The legs' zero postures need not close the loops.)
+struct JointDescription {
+  std::string name;
+  JointType type = JointType::revolute;
+  bool active = false;
+  Vector3 axis = Vector3::UnitZ();  ///< unit vector
+  Vector3 point = Vector3::Zero();  ///< a point on the axis; for a parallelogram, the root end of its bars [m]
+  Interval range{-1e9, 1e9};        ///< [rad] or [m]; passive joints may leave it out
+  double home = 0.0;  ///< value in a posture that closes the loops: where the solver starts [rad] or [m]
+
+  bool operator==(const JointDescription&) const = default;
+};
+
+/// How the last link of a leg holds the platform.
+enum class Attachment {
+  rigid,      ///< position and orientation: the platform is the leg's last link
+  spherical,  ///< position of one point only
+};
+
+/// A serial chain from the base to the platform.
+struct LegDescription {
+  std::string name;
+  std::vector<JointDescription> joints;  ///< from the base outwards
+  Vector3 tip =
+      Vector3::Zero();  ///< the point of the last link that meets the platform, leg's zero posture [m]
+  Attachment attachment = Attachment::rigid;
+  Vector3 platform_point = Vector3::Zero();  ///< the same point, in the platform frame [m]
+
+  bool operator==(const LegDescription&) const = default;
+};
+
+/// What the platform may do.
+enum class PlatformFreedom {
+  translation,  ///< its axes stay parallel to the base frame's (held so by parallelograms or equal joints)
+  rigid,        ///< all six degrees of freedom, less what the legs forbid
+};
+
+/// Any mechanism: legs from the base to one platform, whose frame carries the tool at its origin.
+struct LegsDescription {
+  PlatformFreedom platform = PlatformFreedom::rigid;
+  std::vector<LegDescription> legs;
+  std::string source;
+  Sources sources = {};
+
+  bool operator==(const LegsDescription&) const = default;
+};
+
+using MechanismDescription = std::variant<DeltaDescription, LegsDescription>;
+
+/// A rigid body fixed to a link or to the platform.
+///
+/// `on` names the link: "platform", or "LEG/JOINT" for the link that this joint moves. A delta also knows
+/// "upper_arm" and "forearm", which stand for all three legs; their frame has its origin in the link's inner
+/// joint, x outwards, z up, y = z x x tangential, with the upper arm horizontal and the forearm pointing up.
+struct BodyDescription {
+  std::string on;
+  double mass = 0.0;                  ///< [kg]
+  Vector3 centre = Vector3::Zero();   ///< centre of mass, at the leg's zero posture [m]
+  Matrix3 inertia = Matrix3::Zero();  ///< about the centre of mass [kg m^2]
+  std::string source;                 ///< where the values come from; "chosen: ..." where no source gives them
+  Sources sources = {};
+
+  bool operator==(const BodyDescription&) const = default;
+};
+
+// -------------------------------------------------------------------------------------------------- drives
+
+/// A threaded input pulley that drives an output sector through a cable wound on both (Neal 2015, section 4.4).
+struct CapstanDescription {
+  double input_diameter = 0.0;   ///< thread major diameter d1 [m]
+  double lead = 0.0;             ///< thread lead d2, single start, 60 deg V [m]
+  Cable cable;                   ///< its coated diameter is d4
+  double output_diameter = 0.0;  ///< d6 [m]
+  double centre_distance = 0.0;  ///< of the two axes d8 [m]
+  double wraps = 0.0;            ///< turns on the input pulley k_r
+  double friction = 0.0;         ///< coefficient cable to pulley mu
+  double preload = 0.0;          ///< cable tension at rest F_p [N]
+  double output_range = 0.0;     ///< angle the output turns through theta6 [rad]; 0 takes the joint's range
+  double mid_angle = 0.0;        ///< joint angle in the middle of the output range [rad]
+  double cable_stiffness_factor = 1.0;  ///< S1: share of the metal's EA/l that a preloaded rope really has [-]
+  std::string source;
+  Sources sources = {};
+
+  bool operator==(const CapstanDescription&) const = default;
+};
+
+/// No transmission: the joint is the motor shaft.
+struct DirectDriveDescription {
+  bool operator==(const DirectDriveDescription&) const = default;
+};
+
+using TransmissionDescription = std::variant<DirectDriveDescription, CapstanDescription>;
+
+/// A leaf spring that keeps the cable preloaded (Neal 2015, section 4.5).
+struct FlexureDescription {
+  double flexible_length = 0.0;  ///< l1 [m]
+  double rigid_length = 0.0;     ///< l2 [m]
+  double width = 0.0;            ///< w [m]
+  double height = 0.0;           ///< h, in the direction of bending [m]
+  Material material;
+  std::string source;
+  Sources sources = {};
+
+  bool operator==(const FlexureDescription&) const = default;
+};
+
+/// What the drive moves, as the two-mass actuator model sees it (Neal 2015, chapter 5).
+struct DriveOutputDescription {
+  double inertia = 0.0;            ///< sector pulley and what is bolted to it J2 [kg m^2]
+  double radius = 0.0;             ///< from the joint axis to the point that pushes r_o [m]
+  double contact_stiffness = 0.0;  ///< of what it pushes against, at that radius k_o [N/m]
+  double contact_damping = 0.0;    ///< c_o [N s/m]
+  std::string source;
+  Sources sources = {};
+
+  bool operator==(const DriveOutputDescription&) const = default;
+};
+
+/// Motor + transmission + encoder + amplifier of one or several active joints.
+struct DriveDescription {
+  std::vector<std::string> joints;  ///< names of active joints; empty means every active joint
+  Motor motor;
+  Encoder encoder;
+  Amplifier amplifier;
+  double supply_voltage = 0.0;     ///< [V]
+  double proportional_gain = 0.0;  ///< of the current loop, in the amplifier's register units
+  double integral_gain = 0.0;      ///< of the current loop, in the amplifier's register units
+  double input_inertia = 0.0;      ///< input pulley and coupling, beside rotor and code wheel [kg m^2]
+  double peak_factor = 1.0;        ///< short-time torque per continuous torque [-]
+  TransmissionDescription transmission;
+  std::optional<FlexureDescription> preloader;
+  std::optional<DriveOutputDescription> output;
+  std::string source;
+  Sources sources = {};
+
+  bool operator==(const DriveDescription&) const = default;
+};
+
+// -------------------------------------------------------------------------------------------------- device
+
+struct Description {
+  std::string name;
+  std::string title;
+  std::string source;
+  Vector3 gravity{0.0, 0.0, -kStandardGravity};  ///< [m/s^2], base frame
+  Matrix3 to_user =
+      Matrix3::Identity();  ///< turns base coordinates into the user's: x to the user, y right, z up
+  MechanismDescription mechanism;
+  std::vector<BodyDescription> bodies;
+  std::vector<DriveDescription> drives;
+  Sources sources = {};
+
+  bool operator==(const Description&) const = default;
+};
+
+}  // namespace zwidth

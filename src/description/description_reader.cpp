@@ -1,0 +1,241 @@
+#include "zwidth/description/internal/description_reader.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+#include "zwidth/description/internal/part_reader.h"
+#include "zwidth/description/names.h"
+
+namespace zwidth {
+namespace {
+
+// ------------------------------------------------------------------------------------------------ mechanism
+
+// Any nonzero direction becomes a unit vector; one that is so already keeps its digits.
+Vector3 direction(const Vector3& v) {
+  constexpr double kRounding = 1e-12;
+  const double norm = v.norm();
+  return norm > 0.0 && std::isfinite(norm) && std::abs(norm - 1.0) > kRounding ? Vector3(v / norm) : v;
+}
+
+JointDescription read_joint(TableReader& table) {
+  JointDescription joint;
+  joint.name = table.text("name", Need::required, "name the joint").value_or("");
+  if (const auto type = table.choice<JointType>("type",
+                                                {{"revolute", JointType::revolute},
+                                                 {"prismatic", JointType::prismatic},
+                                                 {"parallelogram", JointType::parallelogram}},
+                                                Need::required)) {
+    joint.type = *type;
+  }
+  const Dimension dimension = joint.type == JointType::prismatic ? Dimension::length : Dimension::angle;
+  joint.active = table.flag("active", Need::optional).value_or(false);
+  const std::string_view axis_advice = "give the direction of the axis at the zero posture, such as [0, 0, 1]";
+  if (const auto axis = table.vector("axis", Dimension::number, Need::required, axis_advice)) {
+    joint.axis = direction(*axis);
+  }
+  const std::string_view point_advice =
+      "give a point on the axis at the zero posture, such as [\"80 mm\", 0, 0]";
+  if (const auto point = table.vector("point", Dimension::length, Need::required, point_advice))
+    joint.point = *point;
+  const std::string_view range_advice = "give the lowest and the highest value";
+  if (const auto range = table.interval("range", dimension, Need::optional, range_advice)) joint.range = *range;
+  joint.home = table.quantity("home", dimension, Need::optional).value_or(0.0);
+  table.finish();
+  return joint;
+}
+
+LegDescription read_leg(TableReader& table) {
+  LegDescription leg;
+  leg.name = table.text("name", Need::required, "name the leg").value_or("");
+  const std::string_view tip_advice = "give the point that meets the platform, at the leg's zero posture";
+  if (const auto tip = table.vector("tip", Dimension::length, Need::required, tip_advice)) leg.tip = *tip;
+  if (const auto attachment = table.choice<Attachment>(
+          "attachment", {{"rigid", Attachment::rigid}, {"spherical", Attachment::spherical}}, Need::required)) {
+    leg.attachment = *attachment;
+  }
+  const std::string_view point_advice = "give the same point in the platform frame";
+  if (const auto point = table.vector("platform_point", Dimension::length, Need::optional, point_advice)) {
+    leg.platform_point = *point;
+  }
+  for (TableReader& joint : table.tables("joint")) leg.joints.push_back(read_joint(joint));
+  table.finish();
+  return leg;
+}
+
+DeltaDescription read_delta(TableReader& table) {
+  DeltaDescription delta;
+  table.read(delta);
+  table.read_sources(delta.source, delta.sources, Need::optional);
+  table.finish();
+  return delta;
+}
+
+LegsDescription read_legs(TableReader& table, TableReader& device) {
+  LegsDescription legs;
+  if (const auto platform = table.choice<PlatformFreedom>(
+          "platform", {{"translation", PlatformFreedom::translation}, {"rigid", PlatformFreedom::rigid}},
+          Need::required)) {
+    legs.platform = *platform;
+  }
+  table.read_sources(legs.source, legs.sources, Need::optional);
+  table.finish();
+  for (TableReader& leg : device.tables("leg")) legs.legs.push_back(read_leg(leg));
+  return legs;
+}
+
+enum class MechanismType { delta, legs };
+
+MechanismDescription read_mechanism(TableReader& device) {
+  const std::string_view advice = "start one with [mechanism] and type = \"delta\" or \"legs\"";
+  std::optional<TableReader> table = device.table("mechanism", Need::required, advice);
+  if (!table) {
+    device.has("leg");
+    return {};
+  }
+  const auto type = table->choice<MechanismType>(
+      "type", {{"delta", MechanismType::delta}, {"legs", MechanismType::legs}}, Need::required);
+  if (!type) {
+    device.has("leg");
+    return {};
+  }
+  if (*type == MechanismType::legs) return read_legs(*table, device);
+  if (device.has("leg"))
+    device.report("leg", "belongs to type = \"legs\"", "leave it out, or change mechanism.type");
+  return read_delta(*table);
+}
+
+// --------------------------------------------------------------------------------------------------- bodies
+
+BodyDescription read_body(TableReader& table) {
+  BodyDescription body;
+  body.on = table.text("on", Need::required, "name the link: \"platform\", \"LEG/JOINT\", ...").value_or("");
+  body.mass =
+      table.quantity("mass", Dimension::mass, Need::required, "give the mass, such as \"80 g\"").value_or(0.0);
+  const std::string_view centre_advice = "give the centre of mass, such as [\"40 mm\", 0, 0]";
+  if (const auto centre = table.vector("centre", Dimension::length, Need::optional, centre_advice)) {
+    body.centre = *centre;
+  }
+  const std::string_view inertia_advice = "give [xx, yy, zz], [xx, yy, zz, xy, xz, yz], or three rows";
+  if (const auto inertia = table.symmetric("inertia", Dimension::inertia, Need::optional, inertia_advice)) {
+    body.inertia = *inertia;
+  }
+  table.read_sources(body.source, body.sources, Need::optional);
+  table.finish();
+  return body;
+}
+
+// --------------------------------------------------------------------------------------------------- drives
+
+enum class TransmissionType { direct, capstan };
+
+TransmissionDescription read_transmission(TableReader& drive, const Catalogue& catalogue,
+                                          const std::optional<Interval>& joint_range) {
+  std::optional<TableReader> table =
+      drive.table("transmission", Need::optional, "write transmission = { type = \"capstan\", ... }");
+  if (!table) return DirectDriveDescription{};
+  const auto type = table->choice<TransmissionType>(
+      "type", {{"direct", TransmissionType::direct}, {"capstan", TransmissionType::capstan}}, Need::required);
+  if (!type) return DirectDriveDescription{};
+  if (*type == TransmissionType::direct) {
+    table->finish();
+    return DirectDriveDescription{};
+  }
+  CapstanDescription capstan;
+  if (joint_range) capstan.mid_angle = joint_range->middle();
+  table->read(capstan);
+  capstan.cable = read_part<Cable>(*table, "cable", catalogue);
+  table->read_sources(capstan.source, capstan.sources, Need::optional);
+  table->finish();
+  return capstan;
+}
+
+std::optional<FlexureDescription> read_preloader(TableReader& drive, const Catalogue& catalogue) {
+  std::optional<TableReader> table =
+      drive.table("preloader", Need::optional, "write preloader = { flexible_length = ..., ... }");
+  if (!table) return std::nullopt;
+  FlexureDescription flexure;
+  table->read(flexure);
+  flexure.material = read_part<Material>(*table, "material", catalogue);
+  table->read_sources(flexure.source, flexure.sources, Need::optional);
+  table->finish();
+  return flexure;
+}
+
+std::optional<DriveOutputDescription> read_output(TableReader& drive) {
+  std::optional<TableReader> table =
+      drive.table("output", Need::optional, "write output = { inertia = ..., radius = ..., ... }");
+  if (!table) return std::nullopt;
+  DriveOutputDescription output;
+  table->read(output);
+  table->read_sources(output.source, output.sources, Need::optional);
+  table->finish();
+  return output;
+}
+
+// The range of the first joint that the drive moves, if there is one.
+std::optional<Interval> range_of_driven_joint(const MechanismDescription& mechanism,
+                                              const DriveDescription& drive) {
+  if (const auto* delta = std::get_if<DeltaDescription>(&mechanism)) return delta->joint_range;
+  const std::vector<int> driven = driven_joints(mechanism, drive);
+  int index = 0;
+  for (const LegDescription& leg : std::get<LegsDescription>(mechanism).legs) {
+    for (const JointDescription& joint : leg.joints) {
+      if (joint.active && !driven.empty() && index++ == driven.front()) return joint.range;
+    }
+  }
+  return std::nullopt;
+}
+
+DriveDescription read_drive(TableReader& table, const Catalogue& catalogue,
+                            const MechanismDescription& mechanism) {
+  DriveDescription drive;
+  if (auto joints = table.texts("joints", "write \"all\" or a list of names")) {
+    if (*joints != std::vector<std::string>{"all"}) {
+      if (joints->empty())
+        table.report("joints", "names no joint", "write \"all\", or leave it out, for every active joint");
+      drive.joints = std::move(*joints);
+    }
+  }
+  drive.motor = read_part<Motor>(table, "motor", catalogue);
+  drive.encoder = read_part<Encoder>(table, "encoder", catalogue);
+  drive.amplifier = read_part<Amplifier>(table, "amplifier", catalogue);
+  table.read(drive);
+  drive.transmission = read_transmission(table, catalogue, range_of_driven_joint(mechanism, drive));
+  drive.preloader = read_preloader(table, catalogue);
+  drive.output = read_output(table);
+  table.read_sources(drive.source, drive.sources, Need::optional);
+  table.finish();
+  return drive;
+}
+
+}  // namespace
+
+Description read_device_tables(Input& input, const Catalogue& catalogue) {
+  Description description;
+  TableReader file(input, input.root(), "");
+  if (auto device = file.table("device", Need::required, "start the file with [device] and name = \"...\"")) {
+    description.name = device->text("name", Need::required, "give the device a short name").value_or("");
+    description.title = device->text("title", Need::optional).value_or(description.name);
+    const std::string_view gravity_advice = "give a vector in the base frame, such as [0, 0, -9.80665]";
+    if (const auto gravity =
+            device->vector("gravity", Dimension::acceleration, Need::optional, gravity_advice)) {
+      description.gravity = *gravity;
+    }
+    const std::string_view rows_advice = "give three rows: the user's x, y and z axes in base coordinates";
+    if (const auto to_user = device->matrix("to_user", Dimension::number, Need::optional, rows_advice)) {
+      description.to_user = *to_user;
+    }
+    device->read_sources(description.source, description.sources, Need::optional);
+    device->finish();
+  }
+  description.mechanism = read_mechanism(file);
+  for (TableReader& body : file.tables("body")) description.bodies.push_back(read_body(body));
+  for (TableReader& drive : file.tables("drive")) {
+    description.drives.push_back(read_drive(drive, catalogue, description.mechanism));
+  }
+  file.finish();
+  return description;
+}
+
+}  // namespace zwidth

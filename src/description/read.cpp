@@ -1,0 +1,38 @@
+#include "zwidth/description/read.h"
+
+#include <algorithm>
+
+#include "zwidth/description/internal/checks.h"
+#include "zwidth/description/internal/description_reader.h"
+#include "zwidth/description/internal/table_reader.h"
+
+namespace zwidth {
+
+Description parse_description(std::string_view text, std::string_view file,
+                              const std::vector<std::string>& overrides, const Catalogue& catalogue) {
+  const bool blank = std::all_of(text.begin(), text.end(),
+                                 [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; });
+  if (blank) {
+    throw DescriptionError(
+        {{.file = std::string(file),
+          .rule = "is empty",
+          .advice = "start with [device], as in docs/device_file.md, or with `zwidth show delta`"}});
+  }
+  Input input(text, file);
+  for (const std::string& override_text : overrides) input.set(override_text);
+  Description description = read_device_tables(input, catalogue);
+  const bool mechanism_read = !input.faulty("mechanism") && !input.faulty("leg");
+  input.add_value_problems(value_problems(description));
+  if (mechanism_read) input.add_value_problems(name_problems(description));
+  input.throw_problems();
+  return description;
+}
+
+Description read_description(std::string_view device, const std::vector<std::string>& overrides,
+                             const Catalogue& catalogue) {
+  if (device == "-") return parse_description(read_text("-"), "<stdin>", overrides, catalogue);
+  const std::string path = resolve_device(device, catalogue).string();
+  return parse_description(read_text(path), path, overrides, catalogue);
+}
+
+}  // namespace zwidth

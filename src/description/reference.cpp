@@ -1,0 +1,185 @@
+#include "zwidth/description/reference.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+#include "zwidth/description/internal/schema.h"
+
+namespace zwidth {
+namespace {
+
+std::string unit_text(Dimension dimension) {
+  if (dimension == Dimension::number) return "number";
+  const std::string_view name = dimension_name(dimension);
+  return fmt::format("{} [{}]", name.substr(name.find(' ') + 1), si_unit(dimension));
+}
+
+template <class Owner>
+KeyReference reference_of(const Field<Owner>& field) {
+  static const Owner untouched{};
+  KeyReference key{.key = std::string(field.key),
+                   .takes = unit_text(field.dimension),
+                   .left_out = "required",
+                   .rule = bounds_rule(field.bounds, field.dimension),
+                   .meaning = std::string(field.meaning),
+                   .example = std::string(field.example)};
+  std::visit(
+      [&](auto member) {
+        using Value = std::remove_cvref_t<decltype(untouched.*member)>;
+        if constexpr (std::is_same_v<Value, Interval>) {
+          key.takes = "[lowest, highest] " + key.takes;
+        } else if constexpr (std::is_same_v<Value, Vector3>) {
+          key.takes = "[x, y, z] " + key.takes;
+        } else {
+          if constexpr (std::is_same_v<Value, int>) key.takes = "whole number";
+          const auto value = static_cast<double>(untouched.*member);
+          if (field.need == Need::optional)
+            key.left_out = std::isnan(value) ? "not given" : fmt::format("{}", value);
+        }
+      },
+      field.member);
+  return key;
+}
+
+template <class Owner>
+std::vector<KeyReference> references_of() {
+  std::vector<KeyReference> keys;
+  for (const Field<Owner>& field : fields<Owner>()) keys.push_back(reference_of(field));
+  return keys;
+}
+
+const std::vector<KeyReference> kSourceKeys{
+    {"source", "string", "empty", "", "where the values come from; \"chosen: why\" where no source gives them",
+     "\"Neal 2015, table 3.1\""},
+    {"sources", "table of strings", "empty", "of keys that this table has",
+     "where single values come from, if not from `source`", ""}};
+
+template <class Owner>
+TableReference table(std::string name, std::vector<KeyReference> before,
+                     const std::vector<KeyReference>& after = {}) {
+  TableReference result{.name = std::move(name), .keys = std::move(before)};
+  const auto append = [&](const std::vector<KeyReference>& more) {
+    result.keys.insert(result.keys.end(), more.begin(), more.end());
+  };
+  if constexpr (!std::is_void_v<Owner>) append(references_of<Owner>());
+  append(after);
+  append(kSourceKeys);
+  return result;
+}
+
+template <class Part>
+TableReference part_table(std::string name) {
+  TableReference result =
+      table<Part>(std::move(name),
+                  {{"title", "string", "the part's name", "", "what a person calls it", "\"Maxon RE 40\""}});
+  result.keys[result.keys.size() - 2].left_out = "required";  // the source
+  return result;
+}
+
+KeyReference part_key(const char* kind, const char* example) {
+  return {kind,
+          fmt::format("name of a {}, or table with `base`", kind),
+          "required",
+          "is in the catalogue",
+          fmt::format("the {}; see parts", kind),
+          example};
+}
+
+}  // namespace
+
+std::vector<TableReference> file_reference() {
+  return {
+      table<void>("device",
+                  {{"name", "string", "required", "must not be empty", "what commands and results call it",
+                    "\"delta\""},
+                   {"title", "string", "the name", "", "what a person calls it", "\"Delta controller\""},
+                   {"gravity", "[x, y, z] acceleration [m/s^2]", "[0, 0, -9.80665]", "must be finite",
+                    "gravity in the base frame", "[0, 0, -9.80665]"},
+                   {"to_user", "three rows of three numbers", "identity", "must be a rotation, to 1e-6",
+                    "turns base coordinates into the user's: x to the user, y to the user's right, z up",
+                    "[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]"}}),
+      table<DeltaDescription>("delta",
+                              {{"type", "string", "required", "", "the kind of mechanism", "\"delta\""}}),
+      table<void>("legs", {{"type", "string", "required", "", "the kind of mechanism", "\"legs\""},
+                           {"platform", "\"translation\" or \"rigid\"", "required", "",
+                            "what the platform may do: keep its axes parallel to the base's, or move freely",
+                            "\"translation\""}}),
+      {.name = "leg",
+       .keys = {{"name", "string", "required", "differs from leg to leg, has no '/'",
+                 "what joints and links refer to", "\"leg1\""},
+                {"tip", "[x, y, z] length [m]", "required", "must be finite",
+                 "the point of the last link that meets the platform, at the leg's zero posture",
+                 "[0, \"160 mm\", \"160 mm\"]"},
+                {"attachment", "\"rigid\" or \"spherical\"", "required", "",
+                 "whether the platform is the last link, or hangs on it in one point", "\"spherical\""},
+                {"platform_point", "[x, y, z] length [m]", "[0, 0, 0]", "must be finite",
+                 "the same point in the platform frame, whose origin is the tool", "[0, \"55 mm\", 0]"}}},
+      {.name = "joint",
+       .keys = {{"name", "string", "required", "differs from joint to joint of a leg, has no '/'",
+                 "what drives and bodies refer to", "\"theta1\""},
+                {"type", "\"revolute\", \"prismatic\" or \"parallelogram\"", "required", "",
+                 "turns the following links, slides them, or swings them on parallel bars without turning them",
+                 "\"revolute\""},
+                {"active", "true or false", "false", "at least one joint, at most 8",
+                 "whether a drive may move it", "true"},
+                {"axis", "[x, y, z] number", "required", "must not be zero",
+                 "direction of the axis at the leg's zero posture, of any length", "[1, 0, 0]"},
+                {"point", "[x, y, z] length [m]", "required", "must be finite",
+                 "a point on the axis at the leg's zero posture; the root end of the bars of a parallelogram",
+                 "[0, \"80 mm\", 0]"},
+                {"range", "[lowest, highest] angle [rad] or length [m]", "unlimited",
+                 "smaller to larger; required if active", "how far the joint goes",
+                 "[\"-36 deg\", \"84 deg\"]"},
+                {"home", "angle [rad] or length [m]", "0", "must be in the range",
+                 "value in a posture that closes the loops, from which solving starts", "\"24 deg\""}}},
+      table<void>(
+          "body",
+          {{"on", "string", "required", "names a link",
+            "the link that it is fixed to: \"platform\", \"LEG/JOINT\" for the link that this joint moves; a "
+            "delta also has \"upper_arm\" and \"forearm\", for all three legs",
+            "\"platform\""},
+           {"mass", "mass [kg]", "required", "must be from 0 to 1000 kg", "mass", "\"80 g\""},
+           {"centre", "[x, y, z] length [m]", "[0, 0, 0]", "must be finite",
+            "centre of mass at the leg's zero posture, in the base frame; of the platform in its frame; of "
+            "upper_arm and forearm from the link's inner joint, x outwards, z up",
+            "[\"40 mm\", 0, 0]"},
+           {"inertia", "[xx, yy, zz], [xx, yy, zz, xy, xz, yz] or three rows, moment of inertia [kg m^2]", "0",
+            "of a possible body: symmetric, positive, no principal moment above the sum of the others",
+            "about the centre of mass", "[0, \"430 g cm^2\", \"430 g cm^2\"]"}}),
+      table<DriveDescription>(
+          "drive",
+          {{"joints", "\"all\", a name or a list of names", "\"all\"", "active joints, each with one drive",
+            "the joints that have this drive, one each", "[\"theta1\", \"theta2\"]"},
+           part_key("motor", "\"maxon-ec-4pole-30-100w-48v\""),
+           part_key("encoder", "\"maxon-mr-1000\""),
+           part_key("amplifier", "\"maxon-epos2-50-5\"")},
+          {{"transmission", "table", "direct drive", "", "see `capstan`; { type = \"direct\" } for none",
+            "{ type = \"direct\" }"},
+           {"preloader", "table", "none", "", "spring that keeps the cable tight; see `preloader`", ""},
+           {"output", "table", "none", "", "what the drive moves, for its frequency response; see `output`",
+            ""}}),
+      table<CapstanDescription>("capstan",
+                                {{"type", "string", "required", "", "the kind of transmission", "\"capstan\""}},
+                                {part_key("cable", "\"7x19-nylon-0.762\"")}),
+      table<FlexureDescription>("preloader", {}, {part_key("material", "\"aluminium-6061-t6\"")}),
+      table<DriveOutputDescription>("output", {}),
+      part_table<Motor>("motor"),
+      part_table<Encoder>("encoder"),
+      part_table<Amplifier>("amplifier"),
+      part_table<Cable>("cable"),
+      part_table<Bearing>("bearing"),
+      part_table<Material>("material"),
+  };
+}
+
+std::string markdown(const TableReference& table) {
+  std::string text = "| key | takes | left out | rule | meaning | example |\n|---|---|---|---|---|---|\n";
+  for (const KeyReference& key : table.keys) {
+    const std::string example = key.example.empty() ? "" : '`' + key.example + '`';
+    text += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", key.key, key.takes, key.left_out, key.rule,
+                        key.meaning, example);
+  }
+  return text;
+}
+
+}  // namespace zwidth

@@ -1,0 +1,340 @@
+#include "zwidth/description/validate.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+#include <set>
+
+#include "zwidth/description/internal/checks.h"
+#include "zwidth/description/internal/schema.h"
+#include "zwidth/description/limits.h"
+#include "zwidth/description/names.h"
+
+namespace zwidth {
+namespace {
+
+constexpr double kUnbounded = 1e8;  // [m] or [rad]; a range beyond is no range
+
+class Validator {
+ public:
+  explicit Validator(const Description& description) : d_(description) {}
+
+  std::vector<Problem> values() {
+    device();
+    if (const auto* delta = std::get_if<DeltaDescription>(&d_.mechanism)) check(*delta);
+    if (const auto* legs = std::get_if<LegsDescription>(&d_.mechanism)) check(*legs);
+    for (std::size_t i = 0; i < d_.bodies.size(); ++i) check(d_.bodies[i], join_path("body", i));
+    for (std::size_t i = 0; i < d_.drives.size(); ++i) check(d_.drives[i], join_path("drive", i));
+    return std::move(problems_);
+  }
+
+  std::vector<Problem> names() {
+    const std::vector<std::string> links = link_names(d_.mechanism);
+    for (std::size_t i = 0; i < d_.bodies.size(); ++i) {
+      const std::string& on = d_.bodies[i].on;
+      if (std::find(links.begin(), links.end(), on) == links.end()) {
+        wrong(join_path("body", i) + ".on", quoted(on), "is no link of this mechanism", suggest(on, links));
+      }
+    }
+    const std::vector<std::string> active = active_joint_names(d_.mechanism);
+    std::vector<bool> driven(active.size(), false);
+    for (std::size_t i = 0; i < d_.drives.size(); ++i) {
+      const DriveDescription& drive = d_.drives[i];
+      const std::string key = join_path("drive", i) + ".joints";
+      for (const std::string& joint : drive.joints.empty() ? active : drive.joints) {
+        const int index = active_joint_index(d_.mechanism, joint);
+        if (index < 0) {
+          wrong(key, quoted(joint), "is no active joint of this mechanism", suggest(joint, active));
+        } else if (driven[index]) {
+          wrong(key, quoted(joint), "has another drive already", "give each joint to one drive");
+        } else {
+          driven[index] = true;
+        }
+      }
+    }
+    return std::move(problems_);
+  }
+
+ private:
+  static std::string quoted(const std::string& text) { return '"' + shortened(text) + '"'; }
+
+  void wrong(std::string key, std::string value, std::string rule, std::string advice) {
+    problems_.push_back({.key = std::move(key),
+                         .value = std::move(value),
+                         .rule = std::move(rule),
+                         .advice = std::move(advice)});
+  }
+
+  template <class Owner>
+  void check_fields(const Owner& owner, const std::string& path) {
+    const std::vector<Problem> found = field_problems(owner, path);
+    problems_.insert(problems_.end(), found.begin(), found.end());
+  }
+
+  bool finite(const auto& matrix, const std::string& path) {
+    if (matrix.allFinite()) return true;
+    wrong(path, "", "must be finite", "give numbers");
+    return false;
+  }
+
+  void device() {
+    if (d_.name.empty()) wrong("device.name", "", "must not be empty", "give the device a short name");
+    finite(d_.gravity, "device.gravity");
+    if (!finite(d_.to_user, "device.to_user")) return;
+    constexpr double kRounding = 1e-6;  // a matrix typed with seven digits
+    const Matrix3& R = d_.to_user;
+    const double error = (R * R.transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff();
+    if (error > kRounding) {
+      wrong("device.to_user", "",
+            fmt::format("must be a rotation; its rows are {:.2g} away from orthonormal", error),
+            "give three unit rows at right angles: the user's x, y and z axes in base coordinates");
+    } else if (R.determinant() < 0.0) {
+      wrong("device.to_user", "", "must be a rotation, but mirrors", "turn one of its rows round");
+    }
+  }
+
+  void check(const DeltaDescription& delta) {
+    const std::size_t before = problems_.size();
+    check_fields(delta, "mechanism");
+    if (problems_.size() > before) return;
+    // The three forearms reach a common point only if the circle through the elbows (shifted inwards by the
+    // platform radius) is no larger than they are. As all legs share the range, the distances d5 + d2
+    // cos(theta) of the elbows from the z axis can be made equal, and then are the radius of that circle; while
+    // all of them exceed d3 it does too.
+    const double offset = delta.base_radius - delta.platform_radius;
+    const auto distance = [&](double theta) { return std::abs(offset + delta.upper_arm * std::cos(theta)); };
+    double least = std::min(distance(delta.joint_range.min), distance(delta.joint_range.max));
+    const double flat = std::acos(std::clamp(-offset / delta.upper_arm, -1.0, 1.0));
+    for (const double theta : {-flat, flat, 0.0, -std::numbers::pi, std::numbers::pi}) {
+      if (delta.joint_range.contains(theta)) least = std::min(least, distance(theta));
+    }
+    if (least > delta.forearm) {
+      wrong("mechanism", "",
+            fmt::format(
+                "never closes: everywhere in joint_range the elbows are more than {:.4g} m from the middle, "
+                "out of reach of a forearm of {:.4g} m",
+                least, delta.forearm),
+            "lengthen forearm, or shorten upper_arm or base_radius");
+    }
+  }
+
+  void check(const LegsDescription& legs) {
+    const int count = static_cast<int>(legs.legs.size());
+    if (count == 0)
+      wrong("leg", "", "is missing", "describe each leg with [[leg]] and its joints with [[leg.joint]]");
+    if (count > kMaxLegs) {
+      wrong("leg", fmt::format("{} legs", count), fmt::format("must be at most {}", kMaxLegs), "");
+    }
+    std::set<std::string> names;
+    int joints = 0, active = 0;
+    const std::size_t before = problems_.size();
+    for (std::size_t i = 0; i < legs.legs.size(); ++i) {
+      const LegDescription& leg = legs.legs[i];
+      const std::string path = join_path("leg", i);
+      name(leg.name, names, path + ".name", "leg");
+      check(leg, path);
+      joints += static_cast<int>(leg.joints.size());
+      active += static_cast<int>(
+          std::count_if(leg.joints.begin(), leg.joints.end(), [](const auto& j) { return j.active; }));
+    }
+    if (count > 0 && active == 0) {
+      wrong("mechanism", "", "has no active joint", "set active = true in the joints that drives move");
+    }
+    if (active > kMaxActive) {
+      wrong("leg", fmt::format("{} active joints", active), fmt::format("must be at most {}", kMaxActive), "");
+    }
+    if (joints > kMaxJoints) {
+      wrong("leg", fmt::format("{} joints", joints), fmt::format("must be at most {}", kMaxJoints), "");
+    }
+    if (problems_.size() == before) check_reach(legs);
+  }
+
+  void name(const std::string& name, std::set<std::string>& names, const std::string& key,
+            const std::string& what) {
+    if (name.empty()) {
+      wrong(key, "", "must not be empty", "name each " + what);
+    } else if (name.find('/') != name.npos) {
+      wrong(key, quoted(name), "must not contain '/'", "that separates a leg from its joint");
+    } else if (!names.insert(name).second) {
+      wrong(key, quoted(name), "is the name of another " + what, "give each " + what + " a name of its own");
+    }
+  }
+
+  void check(const LegDescription& leg, const std::string& path) {
+    finite(leg.tip, path + ".tip");
+    finite(leg.platform_point, path + ".platform_point");
+    const int count = static_cast<int>(leg.joints.size());
+    if (count == 0) wrong(path + ".joint", "", "is missing", "describe each joint with [[leg.joint]]");
+    if (count > kMaxLegJoints) {
+      wrong(path + ".joint", fmt::format("{} joints", count), fmt::format("must be at most {}", kMaxLegJoints),
+            "");
+    }
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < leg.joints.size(); ++i) {
+      const JointDescription& joint = leg.joints[i];
+      const std::string key = join_path(path + ".joint", i);
+      name(joint.name, names, key + ".name", "joint");
+      const Vector3& end = i + 1 < leg.joints.size() ? leg.joints[i + 1].point : leg.tip;
+      check(joint, end, key);
+    }
+  }
+
+  void check(const JointDescription& joint, const Vector3& end, const std::string& path) {
+    const Dimension dimension = joint.type == JointType::prismatic ? Dimension::length : Dimension::angle;
+    finite(joint.point, path + ".point");
+    if (finite(joint.axis, path + ".axis")) {
+      constexpr double kRounding = 1e-9;
+      const double norm = joint.axis.norm();
+      if (norm < kRounding) {
+        wrong(path + ".axis", "", "must not be zero", "give the direction of the axis, such as [0, 0, 1]");
+      } else if (std::abs(norm - 1.0) > kRounding) {
+        wrong(path + ".axis", "", "must be a unit vector", "divide it by its length");
+      }
+    }
+    if (joint.type == JointType::parallelogram && joint.point.allFinite() && end.allFinite() &&
+        joint.point == end) {
+      wrong(path + ".point", "", "is where the next joint is, so that the parallelogram has no bars",
+            "give the root end of its bars");
+    }
+    const std::size_t before = problems_.size();
+    check_interval(joint.range, dimension, {}, path + ".range", "give the lowest and the highest value",
+                   problems_);
+    const bool bounded = joint.range.min > -kUnbounded && joint.range.max < kUnbounded;
+    if (joint.active && !bounded) {
+      wrong(path + ".range", "", "is missing", "an active joint needs its lowest and its highest value");
+    }
+    if (problems_.size() > before) return;
+    check_number(joint.home, dimension, {.min = joint.range.min, .max = joint.range.max}, path + ".home",
+                 "start within the range, near a posture that closes the loops", problems_);
+  }
+
+  // Necessary for closing: two legs, each stretched out, span the distance between their roots.
+  void check_reach(const LegsDescription& legs) {
+    const auto reach = [](const LegDescription& leg) {
+      double sum = leg.platform_point.norm();
+      for (std::size_t i = 0; i < leg.joints.size(); ++i) {
+        const JointDescription& joint = leg.joints[i];
+        const Vector3& end = i + 1 < leg.joints.size() ? leg.joints[i + 1].point : leg.tip;
+        sum += (end - joint.point).norm();
+        if (joint.type == JointType::prismatic)
+          sum += std::max(std::abs(joint.range.min), std::abs(joint.range.max));
+      }
+      return sum;
+    };
+    constexpr double kRounding = 1e-9;
+    for (std::size_t i = 0; i < legs.legs.size(); ++i) {
+      for (std::size_t j = i + 1; j < legs.legs.size(); ++j) {
+        const LegDescription &a = legs.legs[i], &b = legs.legs[j];
+        const double gap = (a.joints.front().point - b.joints.front().point).norm();
+        const double span = reach(a) + reach(b);
+        if (gap > span * (1.0 + kRounding)) {
+          wrong(join_path("leg", j), "",
+                fmt::format("never closes: its root is {:.4g} m from that of \"{}\", and both stretched out "
+                            "span {:.4g} m",
+                            gap, a.name, span),
+                "lengthen the links or move the roots together");
+        }
+      }
+    }
+  }
+
+  void check(const BodyDescription& body, const std::string& path) {
+    check_number(body.mass, Dimension::mass, {.min = 0.0, .max = 1000.0}, path + ".mass",
+                 "give the mass, such as \"80 g\"", problems_);
+    finite(body.centre, path + ".centre");
+    const std::string key = path + ".inertia";
+    if (!finite(body.inertia, key)) return;
+    const Matrix3& I = body.inertia;
+    const double size = I.cwiseAbs().maxCoeff();
+    constexpr double kRounding =
+        1e-6;  // relative: tables give few digits, and thin rods lie on the edge of the rule
+    if ((I - I.transpose()).cwiseAbs().maxCoeff() > 1e-12 * size) {
+      wrong(key, "", "must be symmetric", "make the entries above and below the diagonal equal");
+      return;
+    }
+    const Vector3 principal = Eigen::SelfAdjointEigenSolver<Matrix3>(I, Eigen::EigenvaluesOnly).eigenvalues();
+    if (principal[0] < -kRounding * size) {
+      wrong(key, "",
+            fmt::format("must be positive definite; a principal moment is {:.3g} kg m^2", principal[0]),
+            "check its signs and its units");
+    } else if (principal[2] > principal[0] + principal[1] + kRounding * size) {
+      wrong(key, "",
+            fmt::format(
+                "belongs to no body: the principal moment {:.4g} exceeds the sum of the others, {:.4g} kg m^2",
+                principal[2], principal[0] + principal[1]),
+            "give the moments about the centre of mass");
+    }
+  }
+
+  void check(const DriveDescription& drive, const std::string& path) {
+    check_fields(drive, path);
+    check_fields(drive.motor, path + ".motor");
+    check_fields(drive.encoder, path + ".encoder");
+    check_fields(drive.amplifier, path + ".amplifier");
+    const Amplifier& amplifier = drive.amplifier;
+    const double volts = drive.supply_voltage;
+    if (volts > amplifier.max_supply_voltage && amplifier.max_supply_voltage > 0.0) {
+      wrong(path + ".supply_voltage", format_quantity(volts, Dimension::voltage),
+            fmt::format("is more than the amplifier takes, {} V", amplifier.max_supply_voltage), "lower it");
+    } else if (volts > 0.0 && volts < amplifier.min_supply_voltage) {
+      wrong(path + ".supply_voltage", format_quantity(volts, Dimension::voltage),
+            fmt::format("is less than the amplifier needs, {} V", amplifier.min_supply_voltage), "raise it");
+    }
+    if (const auto* capstan = std::get_if<CapstanDescription>(&drive.transmission)) {
+      check(*capstan, path + ".transmission");
+    }
+    if (drive.preloader) {
+      check_fields(*drive.preloader, path + ".preloader");
+      check_fields(drive.preloader->material, path + ".preloader.material");
+    }
+    if (drive.output) check_fields(*drive.output, path + ".output");
+  }
+
+  void check(const CapstanDescription& capstan, const std::string& path) {
+    const std::size_t before = problems_.size();
+    check_fields(capstan, path);
+    check_fields(capstan.cable, path + ".cable");
+    if (problems_.size() > before) return;
+    const Cable& cable = capstan.cable;
+    if (cable.bare_diameter > cable.coated_diameter) {
+      wrong(path + ".cable.bare_diameter", format_quantity(cable.bare_diameter, Dimension::length),
+            "must not be more than coated_diameter", "make both equal for a cable without coating");
+    }
+    // A 60 deg V-thread: its pitch diameter (Neal 2015, eq 4.14) must leave some metal.
+    const double pitch_diameter = capstan.input_diameter - 3.0 / 8.0 * capstan.lead * std::numbers::sqrt3;
+    if (pitch_diameter <= 0.0) {
+      wrong(path + ".lead", format_quantity(capstan.lead, Dimension::length),
+            "cuts the thread deeper than the pulley is thick", "make it finer, or input_diameter larger");
+    }
+    const double touching = 0.5 * (capstan.input_diameter + capstan.output_diameter);
+    if (capstan.centre_distance < touching) {
+      wrong(path + ".centre_distance", format_quantity(capstan.centre_distance, Dimension::length),
+            fmt::format("makes the pulleys overlap; they touch at {}",
+                        format_quantity(touching, Dimension::length)),
+            "move the axes apart");
+    }
+  }
+
+  const Description& d_;
+  std::vector<Problem> problems_;
+};
+
+}  // namespace
+
+std::vector<Problem> value_problems(const Description& description) {
+  return Validator(description).values();
+}
+std::vector<Problem> name_problems(const Description& description) {
+  return Validator(description).names();
+}
+
+std::vector<Problem> validate(const Description& description) {
+  std::vector<Problem> problems = value_problems(description);
+  const std::vector<Problem> names = name_problems(description);
+  problems.insert(problems.end(), names.begin(), names.end());
+  return problems;
+}
+
+}  // namespace zwidth

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include "zwidth/description/description.h"
+#include "zwidth/description/problem.h"
+
+namespace zwidth {
+
+/// Everything that is wrong with a description, whether read or made in code: values out of range, names
+/// unknown or used twice, geometry that never closes. Keys are those of the device file; places are empty.
+/// Empty means that `Mechanism` and `Drive` can be built from it.
+std::vector<Problem> validate(const Description& description);
+
+}  // namespace zwidth

@@ -1,0 +1,82 @@
+#include "zwidth/description/values.h"
+
+#include "zwidth/description/internal/schema.h"
+
+namespace zwidth {
+
+namespace {
+
+template <class... Functions>
+struct Overload : Functions... {
+  using Functions::operator()...;
+};
+
+class Collector {
+ public:
+  explicit Collector(const Description& description) : device_source_(description.source) {}
+
+  template <class Owner>
+  void add_fields(const std::string& table, const Owner& owner, const std::string& fallback) {
+    for (const Field<Owner>& field : fields<Owner>()) {
+      std::vector<double> values = std::visit(
+          Overload{[&](double Owner::*member) { return std::vector<double>{owner.*member}; },
+                   [&](int Owner::*member) { return std::vector<double>{static_cast<double>(owner.*member)}; },
+                   [&](Vector3 Owner::*member) {
+                     const Vector3& v = owner.*member;
+                     return std::vector<double>{v.x(), v.y(), v.z()};
+                   },
+                   [&](Interval Owner::*member) {
+                     return std::vector<double>{(owner.*member).min, (owner.*member).max};
+                   }},
+          field.member);
+      add(table, std::string(field.key), std::move(values), field.dimension, std::string(field.meaning),
+          owner.source.empty() ? fallback : owner.source, owner.sources);
+    }
+  }
+
+  void add(const std::string& table, const std::string& key, std::vector<double> values, Dimension dimension,
+           const std::string& meaning, const std::string& source, const Sources& own) {
+    const auto found = own.find(key);
+    std::string from = found != own.end() ? found->second : source;
+    if (from.empty()) from = device_source_;
+    list_.push_back({table, key, std::move(values), dimension, meaning, std::move(from)});
+  }
+
+  std::vector<DescribedValue> take() { return std::move(list_); }
+
+ private:
+  std::string device_source_;
+  std::vector<DescribedValue> list_;
+};
+
+}  // namespace
+
+std::vector<DescribedValue> described_values(const Description& description) {
+  Collector collector(description);
+  if (const auto* delta = std::get_if<DeltaDescription>(&description.mechanism)) {
+    collector.add_fields("mechanism", *delta, {});
+  }
+  for (std::size_t i = 0; i < description.bodies.size(); ++i) {
+    const BodyDescription& body = description.bodies[i];
+    const std::string table = join_path("body", i);
+    const Matrix3& I = body.inertia;
+    collector.add(table, "mass", {body.mass}, Dimension::mass, "mass of " + body.on, body.source, body.sources);
+    collector.add(table, "centre", {body.centre.x(), body.centre.y(), body.centre.z()}, Dimension::length,
+                  "centre of mass of " + body.on, body.source, body.sources);
+    collector.add(table, "inertia", {I(0, 0), I(1, 1), I(2, 2)}, Dimension::inertia,
+                  "moments of inertia of " + body.on + " about its centre of mass", body.source, body.sources);
+  }
+  for (std::size_t i = 0; i < description.drives.size(); ++i) {
+    const DriveDescription& drive = description.drives[i];
+    const std::string table = join_path("drive", i);
+    collector.add_fields(table, drive, {});
+    if (const auto* capstan = std::get_if<CapstanDescription>(&drive.transmission)) {
+      collector.add_fields(join_path(table, "transmission"), *capstan, drive.source);
+    }
+    if (drive.preloader) collector.add_fields(join_path(table, "preloader"), *drive.preloader, drive.source);
+    if (drive.output) collector.add_fields(join_path(table, "output"), *drive.output, drive.source);
+  }
+  return collector.take();
+}
+
+}  // namespace zwidth

@@ -1,0 +1,257 @@
+#include "zwidth/mechanism/dynamics.h"
+
+#include <Eigen/Cholesky>
+#include <array>
+#include <cassert>
+
+#include "zwidth/math/svd.h"
+
+namespace zwidth {
+namespace {
+
+// Motion of one link's frame: of the point of the joint that moves it, and of the link itself.
+struct LinkMotion {
+  Vector3 velocity, acceleration;  // of the joint's point
+  Vector3 omega, alpha;            // of the link
+};
+using Motions = std::array<LinkMotion, kMaxJoints>;
+
+// Motion of every link for all joint rates and accelerations; the base accelerates by `base` (-gravity makes
+// weights appear as inertia forces).
+void move_links(const Posture& posture, const JointVector& rate, const JointVector& acceleration,
+                const Vector3& base, Motions& motions) {
+  const Mechanism& mechanism = posture.mechanism();
+  for (const LegModel& leg : mechanism.legs()) {
+    Vector3 omega = Vector3::Zero(), alpha = Vector3::Zero();  // of what carries the next joint's axis
+    Vector3 v = Vector3::Zero(), a = base;                     // of the next joint's point
+    for (int j = leg.first; j < leg.first + leg.count; ++j) {
+      const JointModel& joint = mechanism.joints()[j];
+      const Vector3 spin = posture.joint_axis(j) * rate[j];
+      const Vector3 spin_rate = omega.cross(spin) + posture.joint_axis(j) * acceleration[j];
+      LinkMotion& link = motions[j];
+      if (joint.type == JointType::prismatic) {
+        const Vector3 extension = posture.joint_axis(j) * posture.joints()[j];
+        a += alpha.cross(extension) + omega.cross(omega.cross(extension)) + omega.cross(spin) + spin_rate;
+        v += omega.cross(extension) + spin;
+        link = {v, a, omega, alpha};
+      } else {
+        link = {v, a, omega + spin, alpha + spin_rate};
+      }
+      if (j + 1 < leg.first + leg.count) {
+        const Vector3 arm = posture.link_rotation(j) * mechanism.joints()[j + 1].offset;
+        v += link.omega.cross(arm);
+        a += link.alpha.cross(arm) + link.omega.cross(link.omega.cross(arm));
+      }
+      if (joint.type == JointType::revolute) {
+        omega = link.omega;
+        alpha = link.alpha;
+      }
+    }
+  }
+}
+
+Matrix3 world_inertia(const BodyModel& body, const Matrix3& R) {
+  return R * body.inertia * R.transpose();
+}
+
+const Matrix3& body_rotation(const Posture& posture, const BodyModel& body) {
+  return body.joint < 0 ? posture.tool().rotation : posture.link_rotation(body.joint);
+}
+
+// Force on the centre and moment about it that move a body, as the bodies' Newton-Euler equations say.
+struct BodyLoad {
+  Vector3 force, moment;
+};
+BodyLoad body_load(const BodyModel& body, const Matrix3& R, const Vector3& point_acceleration,
+                   const Vector3& omega, const Vector3& alpha) {
+  const Vector3 c = R * body.centre;
+  const Matrix3 inertia = world_inertia(body, R);
+  const Vector3 acceleration = point_acceleration + alpha.cross(c) + omega.cross(omega.cross(c));
+  return {body.mass * acceleration, inertia * alpha + omega.cross(inertia * omega)};
+}
+
+// Forces of all joints, as if each leg were free at its tip, that produce the links' motion; and the wrench at
+// the platform's origin that moves the platform.
+struct FreeForces {
+  JointVector joints;
+  Wrench platform;
+};
+FreeForces free_forces(const Posture& posture, const Motions& motions, const LinkMotion& platform) {
+  const Mechanism& mechanism = posture.mechanism();
+  FreeForces result;
+  result.joints.setZero(mechanism.joint_count());
+
+  // Each link's own load, as force and moment about its joint's point.
+  std::array<Vector3, kMaxJoints> force, moment;
+  for (int j = 0; j < mechanism.joint_count(); ++j) force[j] = moment[j] = Vector3::Zero();
+  for (const BodyModel& body : mechanism.bodies()) {
+    const Matrix3& R = body_rotation(posture, body);
+    const LinkMotion& link = body.joint < 0 ? platform : motions[body.joint];
+    const BodyLoad load = body_load(body, R, link.acceleration, link.omega, link.alpha);
+    const Vector3 about_point = load.moment + (R * body.centre).cross(load.force);
+    if (body.joint < 0) {
+      result.platform.force += load.force;
+      result.platform.moment += about_point;
+    } else {
+      force[body.joint] += load.force;
+      moment[body.joint] += about_point;
+    }
+  }
+  // From the tip inwards: what a joint carries, and the share of it along the joint.
+  for (const LegModel& leg : mechanism.legs()) {
+    Vector3 carried_force = Vector3::Zero(), carried_moment = Vector3::Zero();  // about the outer joint's point
+    for (int j = leg.first + leg.count - 1; j >= leg.first; --j) {
+      const JointModel& joint = mechanism.joints()[j];
+      const bool last = j + 1 == leg.first + leg.count;
+      // The outer joint's fixed point, to which its displacement (a prismatic one) has been brought back below.
+      const Vector3 arm =
+          last ? Vector3::Zero() : Vector3(posture.link_rotation(j) * mechanism.joints()[j + 1].offset);
+      const Vector3 own = moment[j] + arm.cross(carried_force);  // turns bars about the joint's point
+      const Vector3 total_force = force[j] + carried_force;
+      const Vector3 total_moment = own + carried_moment;
+      const Vector3& axis = posture.joint_axis(j);
+      carried_force = total_force;
+      carried_moment = total_moment;
+      switch (joint.type) {
+        case JointType::revolute:
+          result.joints[j] = axis.dot(total_moment);
+          break;
+        case JointType::parallelogram:
+          result.joints[j] = axis.dot(own);
+          break;
+        case JointType::prismatic:
+          result.joints[j] = axis.dot(total_force);
+          carried_moment += (axis * posture.joints()[j]).cross(total_force);
+          break;
+      }
+    }
+  }
+  return result;
+}
+
+// The closed loops' share: tau = Gamma^T f + J^T w.
+ActiveVector closed(const Rates& rates, const FreeForces& forces) {
+  ActiveVector tau = rates.joints.transpose() * forces.joints;
+  tau += rates.tool.topRows<3>().transpose() * forces.platform.force;
+  if (rates.tool.rows() == 6) tau += rates.tool.bottomRows<3>().transpose() * forces.platform.moment;
+  return tau;
+}
+
+LinkMotion platform_motion(const ToolVector& velocity, const ToolVector& acceleration, const Vector3& base) {
+  LinkMotion motion{velocity.head<3>(), acceleration.head<3>() + base, Vector3::Zero(), Vector3::Zero()};
+  if (velocity.size() == 6) {
+    motion.omega = velocity.tail<3>();
+    motion.alpha = acceleration.tail<3>();
+  }
+  return motion;
+}
+
+// Everything but drive inertia and the user's push.
+ActiveVector bodies_torque(const Posture& posture, const Rates& rates, const ActiveVector& rate,
+                           const ActiveVector& acceleration) {
+  const Vector3 base = -posture.mechanism().gravity();
+  const BiasAcceleration bias = bias_acceleration(posture, rates, rate);
+  Motions motions;
+  move_links(posture, rates.joints * rate, rates.joints * acceleration + bias.joints, base, motions);
+  const LinkMotion platform = platform_motion(rates.tool * rate, rates.tool * acceleration + bias.tool, base);
+  return closed(rates, free_forces(posture, motions, platform));
+}
+
+// Velocity of a body's centre and its angular velocity per active rate.
+struct BodyJacobian {
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxActive> linear, angular;
+};
+
+}  // namespace
+
+ActiveMatrix mass_matrix(const Posture& posture) {
+  return mass_matrix(posture, rates(posture));
+}
+
+ActiveMatrix mass_matrix(const Posture& posture, const Rates& rates) {
+  const Mechanism& mechanism = posture.mechanism();
+  const int n = mechanism.active_count();
+  ActiveMatrix M = mechanism.drive_inertia().asDiagonal();
+
+  std::array<Motions, kMaxActive> motions;
+  const JointVector still = JointVector::Zero(mechanism.joint_count());
+  for (int a = 0; a < n; ++a) move_links(posture, rates.joints.col(a), still, Vector3::Zero(), motions[a]);
+
+  BodyJacobian J;
+  J.linear.resize(3, n);
+  J.angular.resize(3, n);
+  for (const BodyModel& body : mechanism.bodies()) {
+    const Matrix3& R = body_rotation(posture, body);
+    const Vector3 c = R * body.centre;
+    for (int a = 0; a < n; ++a) {
+      if (body.joint < 0) {
+        J.angular.col(a).setZero();
+        if (rates.tool.rows() == 6) J.angular.col(a) = rates.tool.col(a).tail<3>();
+        J.linear.col(a) = rates.tool.col(a).head<3>();
+      } else {
+        J.angular.col(a) = motions[a][body.joint].omega;
+        J.linear.col(a) = motions[a][body.joint].velocity;
+      }
+      const Vector3 omega = J.angular.col(a);
+      J.linear.col(a) += omega.cross(c);
+    }
+    M.noalias() += body.mass * J.linear.transpose() * J.linear;
+    M.noalias() += J.angular.transpose() * world_inertia(body, R) * J.angular;
+  }
+  return M;
+}
+
+ActiveVector gravity_torques(const Posture& posture) {
+  return gravity_torques(posture, rates(posture));
+}
+
+ActiveVector gravity_torques(const Posture& posture, const Rates& rates) {
+  const Mechanism& mechanism = posture.mechanism();
+  const Vector3 base = -mechanism.gravity();
+  const JointVector still = JointVector::Zero(mechanism.joint_count());
+  const ToolVector rest = ToolVector::Zero(mechanism.tool_rows());
+  Motions motions;
+  move_links(posture, still, still, base, motions);
+  return closed(rates, free_forces(posture, motions, platform_motion(rest, rest, base)));
+}
+
+ActiveVector inverse_dynamics(const Posture& posture, const ActiveVector& rate,
+                              const ActiveVector& acceleration, const ToolVector& push) {
+  const Rates all = rates(posture);
+  ActiveVector tau = bodies_torque(posture, all, rate, acceleration);
+  tau += posture.mechanism().drive_inertia().cwiseProduct(acceleration);
+  if (push.size() > 0) tau -= all.tool.transpose() * push;
+  return tau;
+}
+
+ActiveVector forward_dynamics(const Posture& posture, const ActiveVector& rate, const ActiveVector& torque,
+                              const ToolVector& push) {
+  const Rates all = rates(posture);
+  ActiveVector driving =
+      torque - bodies_torque(posture, all, rate, ActiveVector::Zero(posture.mechanism().active_count()));
+  if (push.size() > 0) driving += all.tool.transpose() * push;
+  return mass_matrix(posture, all).ldlt().solve(driving);
+}
+
+ToolMatrix cartesian_mass(const Jacobian& jacobian, const ActiveMatrix& mass) {
+  // Lambda^-1 = J M^-1 J^T, the mobility of the tool, inverted along the directions in which the tool can move
+  // at all.
+  const Jacobian moved = mass.ldlt().solve(jacobian.transpose()).transpose();
+  return pseudo_inverse(moved.lazyProduct(jacobian.transpose()));
+}
+
+double kinetic_energy(const Posture& posture, const ActiveVector& rate) {
+  return 0.5 * rate.dot(mass_matrix(posture) * rate);
+}
+
+double potential_energy(const Posture& posture) {
+  const Mechanism& mechanism = posture.mechanism();
+  double V = 0.0;
+  for (const BodyModel& body : mechanism.bodies()) {
+    const Vector3& point = body.joint < 0 ? posture.tool().position : posture.joint_point(body.joint);
+    V -= body.mass * mechanism.gravity().dot(point + body_rotation(posture, body) * body.centre);
+  }
+  return V;
+}
+
+}  // namespace zwidth

@@ -1,0 +1,64 @@
+#include "zwidth/mechanism/figure.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace zwidth {
+namespace {
+
+constexpr std::array<FigureInfo, kFigureCount> kInfo = {{
+    {"condition_number", "1", "condition number of the Jacobian"},
+    {"manipulability", "m^3/rad^3", "manipulability |det J|"},
+    {"force_x", "N", "largest force along x"},
+    {"force_y", "N", "largest force along y"},
+    {"force_z", "N", "largest force along z"},
+    {"weakest_force", "N", "force available in every direction"},
+    {"strongest_force", "N", "largest force in any direction"},
+    {"step_x", "m", "worst tool step along x"},
+    {"step_y", "m", "worst tool step along y"},
+    {"step_z", "m", "worst tool step along z"},
+    {"leg_singularity", "1", "distance of the legs from stretched or folded"},
+    {"platform_singularity", "1", "distance of the forearms from coplanar"},
+}};
+
+}  // namespace
+
+const FigureInfo& figure_info(int index) {
+  assert(index >= 0 && index < kFigureCount);
+  return kInfo[index];
+}
+
+FigureValues jacobian_figures(const Matrix3& jacobian, const DriveLimits& limits) {
+  FigureValues values{};
+  const auto set = [&values](Figure which, double value) { values[static_cast<int>(which)] = value; };
+
+  const Vector3 sigma = Eigen::JacobiSVD<Matrix3>(jacobian).singularValues();
+  set(Figure::condition_number, sigma[2] > 0.0 ? sigma[0] / sigma[2] : std::numeric_limits<double>::infinity());
+  set(Figure::manipulability, std::abs(jacobian.determinant()));
+
+  // |J_kj| f_k <= limit_j for every joint j.
+  const Matrix3 load = jacobian.cwiseAbs() * limits.torque.cwiseInverse().asDiagonal();
+  for (int k = 0; k < 3; ++k) values[static_cast<int>(Figure::force_x) + k] = 1.0 / load.row(k).maxCoeff();
+
+  // The polytope |J_j . f| <= limit_j: its faces lie limit_j/|J_j| from the origin, its vertices at J^-T
+  // (+-limit).
+  set(Figure::weakest_force,
+      (limits.torque.array() / jacobian.colwise().norm().transpose().array()).minCoeff());
+  const Matrix3 edges = jacobian.inverse().transpose() * limits.torque.asDiagonal();
+  double strongest = 0.0;
+  for (int signs = 0; signs < 4; ++signs) {
+    const Vector3 vertex =
+        edges.col(0) + (signs & 1 ? 1.0 : -1.0) * edges.col(1) + (signs & 2 ? 1.0 : -1.0) * edges.col(2);
+    strongest = std::max(strongest, vertex.norm());
+  }
+  set(Figure::strongest_force, sigma[2] > 0.0 ? strongest : std::numeric_limits<double>::infinity());
+
+  const Vector3 step = jacobian.cwiseAbs() * limits.step;
+  for (int k = 0; k < 3; ++k) values[static_cast<int>(Figure::step_x) + k] = step[k];
+  return values;
+}
+
+}  // namespace zwidth

@@ -1,0 +1,78 @@
+#include "zwidth/mechanism/mechanism.h"
+
+#include <algorithm>
+#include <cassert>
+#include <map>
+
+namespace zwidth {
+namespace {
+
+// Index of the joint named "LEG/JOINT", -1 for the platform.
+int joint_of(const std::string& on, const std::vector<std::string>& names) {
+  if (on == "platform") return -1;
+  const auto found = std::find(names.begin(), names.end(), on);
+  assert(found != names.end());
+  return static_cast<int>(found - names.begin());
+}
+
+}  // namespace
+
+Mechanism::Mechanism(const Description& description) : name_(description.name), gravity_(description.gravity) {
+  if (const auto* delta = std::get_if<DeltaDescription>(&description.mechanism))
+    delta_ = delta_geometry(*delta);
+  const Description general = spelled_out(description);
+  const LegsDescription& mechanism = std::get<LegsDescription>(general.mechanism);
+  assert(mechanism.legs.size() <= kMaxLegs);
+  platform_ = mechanism.platform;
+
+  std::map<std::string, int> uses;
+  for (const LegDescription& leg : mechanism.legs) {
+    for (const JointDescription& joint : leg.joints) ++uses[joint.name];
+  }
+  std::vector<Vector3> points;  // of the joints at the legs' zero posture
+  std::vector<double> home;
+  for (const LegDescription& leg : mechanism.legs) {
+    assert(leg.joints.size() <= kMaxLegJoints);
+    LegModel model;
+    model.first = joint_count();
+    model.count = static_cast<int>(leg.joints.size());
+    model.attachment = leg.attachment;
+    model.platform_point = leg.platform_point;
+    Vector3 inner = Vector3::Zero();
+    for (const JointDescription& joint : leg.joints) {
+      JointModel one;
+      one.type = joint.type;
+      one.axis = joint.axis.normalized();
+      one.offset = joint.point - inner;
+      one.range = joint.range;
+      joint_names_.push_back(leg.name + "/" + joint.name);
+      if (joint.active) {
+        one.active = active_count();
+        active_joints_.push_back(joint_count());
+        active_names_.push_back(uses[joint.name] == 1 ? joint.name : joint_names_.back());
+      }
+      characteristic_length_ = std::max(characteristic_length_, one.offset.norm());
+      joints_.push_back(one);
+      points.push_back(joint.point);
+      home.push_back(joint.home);
+      inner = joint.point;
+    }
+    model.tip = leg.tip - inner;
+    characteristic_length_ = std::max(characteristic_length_, model.tip.norm());
+    legs_.push_back(model);
+  }
+  assert(joint_count() <= kMaxJoints && active_count() <= kMaxActive);
+  home_guess_ = Eigen::Map<const Eigen::VectorXd>(home.data(), static_cast<Eigen::Index>(home.size()));
+  drive_inertia_ = ActiveVector::Zero(active_count());
+
+  for (const BodyDescription& body : general.bodies) {
+    BodyModel model;
+    model.joint = joint_of(body.on, joint_names_);
+    model.mass = body.mass;
+    model.centre = model.joint < 0 ? body.centre : Vector3(body.centre - points[model.joint]);
+    model.inertia = body.inertia;
+    bodies_.push_back(model);
+  }
+}
+
+}  // namespace zwidth

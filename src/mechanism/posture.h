@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "zwidth/mechanism/mechanism.h"
+#include "zwidth/mechanism/sizes.h"
+#include "zwidth/mechanism/solve_status.h"
+
+namespace zwidth {
+
+namespace internal {
+class PostureBuilder;
+}
+
+/// A mechanism with every joint, active and passive, solved: the only door to Jacobian, statics and dynamics.
+/// Only the solvers make one, so nothing can be asked before the loops are closed. The mechanism must outlive
+/// it.
+class Posture {
+ public:
+  const Mechanism& mechanism() const { return *mechanism_; }
+  const JointVector& joints() const { return joints_; }  ///< all joints, leg after leg [rad] or [m]
+  ActiveVector active() const;                           ///< the active ones [rad] or [m]
+  const Pose& tool() const { return tool_; }             ///< platform frame in the base frame
+
+  /// Origin of the link that joint j moves (a point on the joint's axis), and the axis' direction, in the base
+  /// frame.
+  const Vector3& joint_point(int j) const { return points_[j]; }
+  const Vector3& joint_axis(int j) const { return axes_[j]; }
+  /// Orientation of the link that joint j moves.
+  const Matrix3& link_rotation(int j) const { return links_[j]; }
+  /// Where leg l meets the platform, base frame [m].
+  const Vector3& leg_tip(int l) const { return tips_[l]; }
+  /// Orientation of what follows the last joint of leg l (of its last link, unless that is a parallelogram's
+  /// bars).
+  const Matrix3& leg_tip_rotation(int l) const { return tip_rotations_[l]; }
+
+ private:
+  friend class internal::PostureBuilder;
+  explicit Posture(const Mechanism& mechanism) : mechanism_(&mechanism) {}
+
+  const Mechanism* mechanism_;
+  JointVector joints_;
+  Pose tool_;
+  std::array<Vector3, kMaxJoints> points_;
+  std::array<Vector3, kMaxJoints> axes_;
+  std::array<Matrix3, kMaxJoints> links_;
+  std::array<Vector3, kMaxLegs> tips_;
+  std::array<Matrix3, kMaxLegs> tip_rotations_;
+};
+
+/// How to solve.
+struct SolveOptions {
+  const Posture* start = nullptr;  ///< follow on from this posture; null starts from the mechanism's home guess
+  bool closed_form = true;         ///< use a closed form where there is one; false forces the general solver
+  bool restart = true;       ///< where the way from the start is lost, look for another: slow if there is none
+  double tolerance = 1e-12;  ///< on the loop closure, relative to the characteristic length
+  int max_iterations = 200;  ///< Newton steps in all, over every step of the way from the start
+};
+
+/// What solving came to.
+struct Solution {
+  SolveStatus status = SolveStatus::unreachable;
+  int joint = -1;      ///< joint at fault (index among all joints), -1 if none
+  int iterations = 0;  ///< Newton steps; 0 for a closed form
+  double residual =
+      -1.0;  ///< closure error left where solving stopped [m, rad x characteristic length]; -1 if none
+  double conditioning = 0.0;       ///< reciprocal condition of the closure at the answer, 0 singular .. 1
+  std::optional<Posture> posture;  ///< present unless unreachable or degenerate
+
+  explicit operator bool() const { return posture.has_value(); }
+};
+
+/// The posture of given active joint values [rad] or [m].
+/// Active values outside their range answer joint_limit, with the posture.
+/// REQUIRES: active.size() == mechanism.active_count(), all finite.
+Solution solve_forward(const Mechanism& mechanism, const ActiveVector& active,
+                       const SolveOptions& options = {});
+
+/// The posture that brings the tool to a pose, nearest to the start (closed form: knees outwards).
+/// A mechanism that only translates ignores the rotation. REQUIRES: all finite.
+Solution solve_inverse(const Mechanism& mechanism, const Pose& tool, const SolveOptions& options = {});
+
+/// Every posture that brings the tool to a pose, one per combination of the legs' roots, those within the joint
+/// ranges first. Empty if unreachable. The general solver searches from seeded starts, so it may miss a root of
+/// a leg with more than three joints. Allocates.
+std::vector<Solution> solve_inverse_all(const Mechanism& mechanism, const Pose& tool,
+                                        const SolveOptions& options = {});
+
+}  // namespace zwidth

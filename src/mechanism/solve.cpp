@@ -1,0 +1,550 @@
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "zwidth/mechanism/internal/closure.h"
+#include "zwidth/mechanism/internal/posture_builder.h"
+#include "zwidth/mechanism/posture.h"
+
+// The general solver is Newton on the loop closure, led from a start by small steps of what is asked for, so
+// that it stays on the branch (assembly mode, working mode) of the start.
+
+namespace zwidth {
+
+using internal::Closure;
+using internal::closure_column;
+using internal::closure_error;
+using internal::ClosureVector;
+using internal::PostureBuilder;
+
+namespace {
+
+constexpr double kSingular = 1e-4;        // reciprocal conditions below this make a posture degraded
+constexpr double kLimitTolerance = 1e-9;  // [rad] or [m]
+constexpr double kLongestStep = 0.4;      // of what leads the way: active joints [rad, characteristic lengths]
+constexpr double kShortestStep = 1e-3;    // share of the way; a shorter step that fails ends the search
+constexpr double kLargestCorrection = 1.5;  // of a joint within one step; more is a jump to another branch
+constexpr double kLoose = 1e-5;             // closure on the way, relative to the characteristic length
+
+struct Newton {
+  bool converged = false;
+  double residual = -1.0;
+  int iterations = 0;
+};
+
+struct Budget {
+  int left;
+  int used = 0;
+};
+
+// Says when Newton no longer gets nearer: near a singularity it still halves the gap, without a solution it
+// does not.
+class Stagnation {
+ public:
+  bool reached(double residual) {
+    if (residual < 0.5 * best_) {
+      best_ = residual;
+      since_ = 0;
+    }
+    return ++since_ > kPatience;
+  }
+
+ private:
+  static constexpr int kPatience = 12;
+  double best_ = std::numeric_limits<double>::infinity();
+  int since_ = 0;
+};
+
+double scaled(const JointModel& joint, double change, double length) {
+  return std::abs(joint.type == JointType::prismatic ? change / length : change);
+}
+
+// Lets go of a correction that would leave the branch: all components shrink together.
+double damping(double largest) {
+  constexpr double kTrust = 0.6;
+  return largest > kTrust ? kTrust / largest : 1.0;
+}
+
+// ----------------------------------------------------------------------------------------------------- forward
+
+// Closes the loops of `posture` at its active joints by moving passive joints and platform. `closure` is left
+// as the last step had it, factored at or next to the answer.
+Newton close_loops(Posture& posture, double tolerance, int limit, Budget& budget, Closure& closure) {
+  const Mechanism& mechanism = posture.mechanism();
+  const int legs = static_cast<int>(mechanism.legs().size());
+  const double length = mechanism.characteristic_length();
+  JointVector& joints = PostureBuilder::joints(posture);
+  Pose& tool = PostureBuilder::tool(posture);
+
+  Newton newton;
+  Stagnation stagnation;
+  ClosureVector error;
+  std::array<double, 6> twist;
+  JointVector change = JointVector::Zero(mechanism.joint_count());
+  while (true) {
+    PostureBuilder::place_legs(posture);
+    newton.residual = 0.0;
+    for (int l = 0; l < legs; ++l) {
+      const int rows = closure_error(posture, l, error[l]);
+      for (int i = 0; i < rows; ++i) newton.residual = std::max(newton.residual, std::abs(error[l][i]));
+    }
+    newton.converged = newton.residual <= tolerance;
+    if (newton.converged || newton.iterations >= limit || budget.left <= 0 ||
+        stagnation.reached(newton.residual))
+      return newton;
+    ++newton.iterations;
+    --budget.left;
+    ++budget.used;
+
+    closure.factor(posture);
+    closure.solve(error, twist, change);
+    double largest = 0.0;
+    for (int j = 0; j < mechanism.joint_count(); ++j) {
+      largest = std::max(largest, scaled(mechanism.joints()[j], change[j], length));
+    }
+    const double share = damping(largest);
+    joints += share * change;
+    for (int k = 0; k < 3; ++k) tool.position[k] += share * twist[k];
+    if (mechanism.tool_rows() == 6) {
+      const Vector3 turn = share * Vector3(twist[3], twist[4], twist[5]);
+      const double angle = turn.norm();
+      if (angle > 0.0) tool.rotation = Eigen::AngleAxisd(angle, turn / angle) * tool.rotation;
+    }
+  }
+}
+
+bool jumped(const Posture& posture, const JointVector& before) {
+  const Mechanism& mechanism = posture.mechanism();
+  for (int j = 0; j < mechanism.joint_count(); ++j) {
+    if (scaled(mechanism.joints()[j], posture.joints()[j] - before[j], mechanism.characteristic_length()) >
+        kLargestCorrection) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// A posture at the home guess, loops not yet closed: the platform where the legs' tips say on average.
+Posture at_home_guess(const Mechanism& mechanism) {
+  Posture posture = PostureBuilder::open(mechanism);
+  PostureBuilder::joints(posture) = mechanism.home_guess();
+  PostureBuilder::place_legs(posture);
+  Pose& tool = PostureBuilder::tool(posture);
+  const int legs = static_cast<int>(mechanism.legs().size());
+  for (int l = 0; l < legs && mechanism.tool_rows() == 6; ++l) {
+    if (mechanism.legs()[l].attachment == Attachment::rigid) {
+      tool.rotation = posture.leg_tip_rotation(l);
+      break;
+    }
+  }
+  for (int l = 0; l < legs; ++l) {
+    tool.position += (posture.leg_tip(l) - tool.rotation * mechanism.legs()[l].platform_point) / legs;
+  }
+  return posture;
+}
+
+// Leads `posture`, closed at its active joints, to other ones. On failure it is left where it failed.
+Newton lead_active(Posture& posture, const ActiveVector& target, double tolerance, Budget& budget,
+                   Closure& closure) {
+  const Mechanism& mechanism = posture.mechanism();
+  const double length = mechanism.characteristic_length();
+  JointVector& joints = PostureBuilder::joints(posture);
+  const ActiveVector from = posture.active();
+  double way = 0.0;
+  for (int i = 0; i < mechanism.active_count(); ++i) {
+    way = std::max(way, scaled(mechanism.joints()[mechanism.active_joint(i)], target[i] - from[i], length));
+  }
+  double step = 1.0 / std::max(1.0, std::ceil(way / kLongestStep));
+  double done = 0.0;
+  Newton newton;
+  while (done < 1.0) {
+    const double next = done + step > 1.0 - 1e-9 ? 1.0 : done + step;
+    const bool last = next == 1.0;
+    const JointVector before = joints;
+    const Pose tool_before = posture.tool();
+    for (int i = 0; i < mechanism.active_count(); ++i) {
+      joints[mechanism.active_joint(i)] = last ? target[i] : from[i] + next * (target[i] - from[i]);
+    }
+    newton = close_loops(posture, last ? tolerance * length : kLoose * length, last ? 40 : 12, budget, closure);
+    if (newton.converged && !jumped(posture, before)) {
+      done = next;
+      continue;
+    }
+    newton.converged = false;
+    step *= 0.5;
+    if (step < kShortestStep || budget.left <= 0) return newton;
+    joints = before;
+    PostureBuilder::tool(posture) = tool_before;
+  }
+  return newton;
+}
+
+// Wraps the passive angles, then says what the posture is worth, given its closure.
+void judge(Solution& solution, const Closure& closure) {
+  Posture& posture = *solution.posture;
+  const Mechanism& mechanism = posture.mechanism();
+  JointVector& joints = PostureBuilder::joints(posture);
+  solution.conditioning = std::min(closure.reciprocal_condition(), closure.drive_condition(posture));
+  solution.status = solution.conditioning < kSingular ? SolveStatus::degraded : SolveStatus::reached;
+  for (int j = 0; j < mechanism.joint_count(); ++j) {
+    const JointModel& joint = mechanism.joints()[j];
+    if (joint.active < 0) joints[j] = internal::wrapped(joint, joints[j]);
+    if (!joint.range.contains(joints[j], kLimitTolerance)) {
+      solution.status = SolveStatus::joint_limit;
+      if (solution.joint < 0) solution.joint = j;
+    }
+  }
+}
+
+Solution forward_general(const Mechanism& mechanism, const ActiveVector& active, const SolveOptions& options) {
+  const double length = mechanism.characteristic_length();
+  Budget budget{options.max_iterations};
+  Closure closure;
+  Solution solution;
+  Newton newton;
+  if (options.start != nullptr) {
+    solution.posture = *options.start;
+    newton = lead_active(*solution.posture, active, options.tolerance, budget, closure);
+  }
+  if (!newton.converged && (options.start == nullptr || options.restart)) {  // from home there may be a way
+    solution.posture = at_home_guess(mechanism);
+    budget.left = std::max(budget.left, options.max_iterations / 2);
+    newton = close_loops(*solution.posture, kLoose * length, 40, budget, closure);
+    if (newton.converged) newton = lead_active(*solution.posture, active, options.tolerance, budget, closure);
+  }
+  solution.iterations = budget.used;
+  solution.residual = newton.residual;
+  if (!newton.converged) {
+    solution.posture.reset();
+    return solution;
+  }
+  if (newton.iterations == 0) closure.factor(*solution.posture);
+  judge(solution, closure);
+  return solution;
+}
+
+// ----------------------------------------------------------------------------------------------------- inverse
+
+// Moves the joints of leg l until its tip meets the platform, where `posture` has it. A leg with more joints
+// than closure rows moves as little as it can.
+Newton reach(Posture& posture, int l, double tolerance, int limit, Budget& budget) {
+  const Mechanism& mechanism = posture.mechanism();
+  const LegModel& leg = mechanism.legs()[l];
+  const double length = mechanism.characteristic_length();
+  JointVector& joints = PostureBuilder::joints(posture);
+  Newton newton;
+  Stagnation stagnation;
+  std::array<double, 6> error, column;
+  std::array<double, kMaxLegJoints> change;
+  while (true) {
+    PostureBuilder::place_leg(posture, l);
+    const int rows = closure_error(posture, l, error);
+    newton.residual = 0.0;
+    for (int i = 0; i < rows; ++i) newton.residual = std::max(newton.residual, std::abs(error[i]));
+    newton.converged = newton.residual <= tolerance;
+    if (newton.converged || newton.iterations >= limit || budget.left <= 0 ||
+        stagnation.reached(newton.residual))
+      return newton;
+    ++newton.iterations;
+    --budget.left;
+    ++budget.used;
+
+    if (leg.count <= rows) {
+      SmallQr<6, kMaxLegJoints> qr;
+      qr.resize(rows, leg.count);
+      for (int j = 0; j < leg.count; ++j) {
+        closure_column(posture, l, leg.first + j, column);
+        for (int i = 0; i < rows; ++i) qr.at(i, j) = column[i];
+      }
+      qr.factor();
+      qr.apply_q_transposed(error);
+      qr.back_substitute(error, change);
+    } else {
+      SmallQr<kMaxLegJoints, 6> qr;
+      qr.resize(leg.count, rows);
+      for (int j = 0; j < leg.count; ++j) {
+        closure_column(posture, l, leg.first + j, column);
+        for (int i = 0; i < rows; ++i) qr.at(j, i) = column[i];
+      }
+      qr.factor();
+      qr.solve_transposed(error, change);
+    }
+    double largest = 0.0;
+    for (int j = 0; j < leg.count; ++j) {
+      largest = std::max(largest, scaled(mechanism.joints()[leg.first + j], change[j], length));
+    }
+    const double share = damping(largest);
+    for (int j = 0; j < leg.count; ++j) joints[leg.first + j] -= share * change[j];
+  }
+}
+
+Pose between(const Pose& from, const Pose& to, double share) {
+  const Vector3 turn = internal::rotation_vector(to.rotation * from.rotation.transpose());
+  const double angle = turn.norm();
+  Pose pose{.position = from.position + share * (to.position - from.position), .rotation = from.rotation};
+  if (angle > 0.0) pose.rotation = Eigen::AngleAxisd(share * angle, turn / angle) * from.rotation;
+  return pose;
+}
+
+// Leads leg l of `posture` from where it meets the tool pose `from` to where it meets `to`.
+Newton lead_leg(Posture& posture, int l, const Pose& from, const Pose& to, double tolerance, Budget& budget) {
+  const Mechanism& mechanism = posture.mechanism();
+  const LegModel& leg = mechanism.legs()[l];
+  const double length = mechanism.characteristic_length();
+  JointVector& joints = PostureBuilder::joints(posture);
+  Pose& tool = PostureBuilder::tool(posture);
+  const double way = std::max((to.position - from.position).norm() / length,
+                              internal::rotation_vector(to.rotation * from.rotation.transpose()).norm());
+  double step = 1.0 / std::max(1.0, std::ceil(way / kLongestStep));
+  double done = 0.0;
+  Newton newton;
+  while (done < 1.0) {
+    const double next = done + step > 1.0 - 1e-9 ? 1.0 : done + step;
+    const bool last = next == 1.0;
+    const JointVector before = joints;
+    tool = last ? to : between(from, to, next);
+    newton = reach(posture, l, last ? tolerance * length : kLoose * length, last ? 60 : 12, budget);
+    if (newton.converged && !jumped(posture, before)) {
+      done = next;
+      continue;
+    }
+    newton.converged = false;
+    step *= 0.5;
+    if (step < kShortestStep || budget.left <= 0) return newton;
+    joints.segment(leg.first, leg.count) = before.segment(leg.first, leg.count);
+  }
+  return newton;
+}
+
+// Van der Corput sequence: spreads seeds evenly, the same ones every time.
+double radical_inverse(int index, int base) {
+  double result = 0.0, digit = 1.0 / base;
+  for (; index > 0; index /= base, digit /= base) result += digit * (index % base);
+  return result;
+}
+
+// Every way found for leg l to meet the platform, nearest to `posture`'s own first. Joint values that put the
+// driven joints and all links' origins in the same place (a universal joint's two readings) count once.
+std::vector<JointVector> leg_roots(const Posture& posture, int l, double tolerance) {
+  constexpr int kSeeds = 64;
+  constexpr double kSame = 1e-6;
+  constexpr std::array<int, kMaxLegJoints> kBases = {2, 3, 5, 7, 11, 13, 17, 19};
+  const Mechanism& mechanism = posture.mechanism();
+  const LegModel& leg = mechanism.legs()[l];
+  const double length = mechanism.characteristic_length();
+  const JointVector here = posture.joints().segment(leg.first, leg.count);
+  const auto own = [&](const Posture& other) -> JointVector {
+    return other.joints().segment(leg.first, leg.count);
+  };
+
+  const auto same = [&](const Posture& a, const Posture& b) {
+    for (int j = leg.first; j < leg.first + leg.count; ++j) {
+      const JointModel& joint = mechanism.joints()[j];
+      const double apart = a.joints()[j] - b.joints()[j];
+      const bool driven_apart =
+          joint.active >= 0 && (joint.type == JointType::prismatic
+                                    ? std::abs(apart) / length
+                                    : std::abs(std::remainder(apart, 2.0 * std::numbers::pi))) > kSame;
+      if (driven_apart || (a.joint_point(j) - b.joint_point(j)).norm() > kSame * length) return false;
+    }
+    return true;
+  };
+
+  std::vector<Posture> found;
+  for (int seed = 0; seed <= kSeeds; ++seed) {
+    Posture trial = posture;
+    JointVector& joints = PostureBuilder::joints(trial);
+    for (int j = 0; j < leg.count && seed > 0; ++j) {
+      const JointModel& joint = mechanism.joints()[leg.first + j];
+      const double bound = joint.type == JointType::prismatic ? 2.0 * length : std::numbers::pi;
+      const double low = std::max(joint.range.min, -bound), high = std::min(joint.range.max, bound);
+      joints[leg.first + j] = low + (high - low) * radical_inverse(seed, kBases[j]);
+    }
+    Budget budget{80};
+    if (!reach(trial, l, tolerance * length, 80, budget).converged) continue;
+    for (int j = leg.first; j < leg.first + leg.count; ++j) {
+      joints[j] = internal::wrapped(mechanism.joints()[j], joints[j]);
+    }
+    const auto known =
+        std::find_if(found.begin(), found.end(), [&](const Posture& one) { return same(one, trial); });
+    if (known == found.end()) {
+      found.push_back(trial);
+    } else if ((own(trial) - here).norm() < (own(*known) - here).norm()) {
+      *known = trial;
+    }
+  }
+  std::vector<JointVector> roots;
+  for (const Posture& one : found) roots.push_back(own(one));
+  std::stable_sort(roots.begin(), roots.end(), [&](const JointVector& a, const JointVector& b) {
+    return (a - here).norm() < (b - here).norm();
+  });
+  return roots;
+}
+
+Solution inverse_general(const Mechanism& mechanism, const Pose& tool, const SolveOptions& options) {
+  const int legs = static_cast<int>(mechanism.legs().size());
+  const double length = mechanism.characteristic_length();
+  Budget budget{options.max_iterations};
+  Closure closure;
+  Solution solution;
+  solution.posture = options.start != nullptr ? *options.start : at_home_guess(mechanism);
+  Posture& posture = *solution.posture;
+  if (options.start == nullptr) {
+    const Newton home = close_loops(posture, kLoose * length, 40, budget, closure);
+    if (!home.converged) {
+      solution.residual = home.residual;
+      solution.posture.reset();
+      return solution;
+    }
+  }
+  const Pose from = posture.tool();
+  for (int l = 0; l < legs; ++l) {
+    budget.left = options.max_iterations;
+    const JointVector before = posture.joints();
+    Newton newton = lead_leg(posture, l, from, tool, options.tolerance, budget);
+    if (!newton.converged && options.restart) {  // the straight way leaves the leg's reach; its goal need not
+      PostureBuilder::joints(posture) = before;
+      PostureBuilder::tool(posture) = tool;
+      const std::vector<JointVector> roots = leg_roots(posture, l, options.tolerance);
+      if (!roots.empty()) {
+        const LegModel& leg = mechanism.legs()[l];
+        PostureBuilder::joints(posture).segment(leg.first, leg.count) = roots.front();
+        newton = reach(posture, l, options.tolerance * length, 5, budget);
+      }
+    }
+    solution.iterations = budget.used;
+    solution.residual = std::max(solution.residual, newton.residual);
+    if (!newton.converged) {
+      solution.joint = mechanism.legs()[l].first;
+      solution.posture.reset();
+      return solution;
+    }
+  }
+  PostureBuilder::tool(posture) = tool;
+  for (int i = 0; i < mechanism.active_count(); ++i) {
+    double& q = PostureBuilder::joints(posture)[mechanism.active_joint(i)];
+    q = internal::wrapped(mechanism.joints()[mechanism.active_joint(i)], q);
+  }
+  closure.factor(posture);
+  judge(solution, closure);
+  return solution;
+}
+
+// ------------------------------------------------------------------------------------------------------
+// Closed forms.
+
+Solution delta_solution(const Mechanism& mechanism, const Vector3& theta, const Vector3& position) {
+  Solution solution;
+  solution.posture = PostureBuilder::open(mechanism);
+  Posture& posture = *solution.posture;
+  JointVector& joints = PostureBuilder::joints(posture);
+  joints.resize(mechanism.joint_count());
+  for (int l = 0; l < 3; ++l) {
+    joints.segment<3>(3 * l) = delta_leg_joints(*mechanism.delta(), l, theta[l], position);
+  }
+  PostureBuilder::tool(posture).position = position;
+  PostureBuilder::place_legs(posture);
+  solution.residual = 0.0;
+  std::array<double, 6> error;
+  for (int l = 0; l < 3; ++l) {
+    const int rows = closure_error(posture, l, error);
+    for (int i = 0; i < rows; ++i) solution.residual = std::max(solution.residual, std::abs(error[i]));
+  }
+  judge(solution, Closure(posture));
+  return solution;
+}
+
+Solution delta_inverse_solution(const Mechanism& mechanism, const Vector3& position,
+                                const std::array<Knee, 3>& knees) {
+  const DeltaInverse inverse = delta_inverse(*mechanism.delta(), position, mechanism.active_range(0), knees);
+  if (inverse.status == SolveStatus::unreachable || inverse.status == SolveStatus::degenerate) {
+    Solution solution;
+    solution.status = inverse.status;
+    solution.joint = mechanism.active_joint(inverse.joint);
+    return solution;
+  }
+  Vector3 theta = inverse.theta;
+  for (int i = 0; i < 3; ++i)
+    theta[i] = internal::wrapped(mechanism.joints()[mechanism.active_joint(i)], theta[i]);
+  return delta_solution(mechanism, theta, position);
+}
+
+}  // namespace
+
+ActiveVector Posture::active() const {
+  ActiveVector active(mechanism_->active_count());
+  for (int i = 0; i < active.size(); ++i) active[i] = joints_[mechanism_->active_joint(i)];
+  return active;
+}
+
+Solution solve_forward(const Mechanism& mechanism, const ActiveVector& active, const SolveOptions& options) {
+  assert(active.size() == mechanism.active_count() && active.allFinite());
+  if (options.closed_form && mechanism.delta()) {
+    const DeltaForward forward = delta_forward(*mechanism.delta(), active);
+    if (forward.status == SolveStatus::unreachable || forward.status == SolveStatus::degenerate) {
+      Solution solution;
+      solution.status = forward.status;
+      return solution;
+    }
+    return delta_solution(mechanism, active, forward.position);
+  }
+  return forward_general(mechanism, active, options);
+}
+
+Solution solve_inverse(const Mechanism& mechanism, const Pose& tool, const SolveOptions& options) {
+  assert(tool.position.allFinite() && tool.rotation.allFinite());
+  if (options.closed_form && mechanism.delta()) {
+    return delta_inverse_solution(mechanism, tool.position, {Knee::outwards, Knee::outwards, Knee::outwards});
+  }
+  Pose wanted = tool;
+  if (mechanism.platform() == PlatformFreedom::translation) wanted.rotation.setIdentity();
+  return inverse_general(mechanism, wanted, options);
+}
+
+std::vector<Solution> solve_inverse_all(const Mechanism& mechanism, const Pose& tool,
+                                        const SolveOptions& options) {
+  assert(tool.position.allFinite() && tool.rotation.allFinite());
+  std::vector<Solution> solutions;
+  if (options.closed_form && mechanism.delta()) {
+    for (int branch = 0; branch < 8; ++branch) {
+      std::array<Knee, 3> knees;
+      for (int l = 0; l < 3; ++l) knees[l] = (branch >> l & 1) != 0 ? Knee::inwards : Knee::outwards;
+      Solution solution = delta_inverse_solution(mechanism, tool.position, knees);
+      if (solution) solutions.push_back(std::move(solution));
+    }
+  } else {
+    constexpr std::size_t kMostSolutions = 256;
+    Posture posture = options.start != nullptr ? *options.start : at_home_guess(mechanism);
+    Pose& goal = PostureBuilder::tool(posture);
+    goal = tool;
+    if (mechanism.platform() == PlatformFreedom::translation) goal.rotation.setIdentity();
+    std::vector<Posture> postures = {posture};
+    for (int l = 0; l < static_cast<int>(mechanism.legs().size()); ++l) {
+      const LegModel& leg = mechanism.legs()[l];
+      std::vector<Posture> grown;
+      for (const JointVector& root : leg_roots(posture, l, options.tolerance)) {
+        for (Posture one : postures) {
+          if (grown.size() == kMostSolutions) break;
+          PostureBuilder::joints(one).segment(leg.first, leg.count) = root;
+          PostureBuilder::place_leg(one, l);
+          grown.push_back(one);
+        }
+      }
+      postures = std::move(grown);
+    }
+    for (const Posture& one : postures) {
+      Solution solution;
+      solution.posture = one;
+      solution.residual = options.tolerance * mechanism.characteristic_length();
+      judge(solution, Closure(*solution.posture));
+      solutions.push_back(std::move(solution));
+    }
+  }
+  std::stable_partition(solutions.begin(), solutions.end(),
+                        [](const Solution& solution) { return solution.status != SolveStatus::joint_limit; });
+  return solutions;
+}
+
+}  // namespace zwidth

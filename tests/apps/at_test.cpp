@@ -1,0 +1,259 @@
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+#include <set>
+#include <sstream>
+
+#include "run_command.h"
+
+namespace zwidth::testing {
+namespace {
+
+using nlohmann::json;
+
+/// The largest difference between two documents of the same shape.
+double difference(const json& a, const json& b) {
+  if (a.is_number() && b.is_number()) return std::abs(a.get<double>() - b.get<double>());
+  if (a.is_null() && b.is_null()) return 0.0;
+  if (!a.is_structured() || a.type() != b.type() || a.size() != b.size())
+    return std::numeric_limits<double>::infinity();
+  double worst = 0.0;
+  for (auto i = a.begin(), j = b.begin(); i != a.end(); ++i, ++j) worst = std::max(worst, difference(*i, *j));
+  return worst;
+}
+
+void expect_finite(const json& value, const std::string& path) {
+  if (value.is_number_float()) {
+    EXPECT_TRUE(std::isfinite(value.get<double>())) << path;
+  }
+  if (!value.is_structured()) return;
+  for (const auto& [key, item] : value.items()) expect_finite(item, path + "." + key);
+}
+
+TEST(At, JointsAndLoadGiveTheKeysOfTheContract) {
+  const Outcome outcome = run({"at", "delta", "--joints", "10deg,20deg,30deg", "--load", "1,2,3", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const json document = outcome.json();
+  for (const char* key : {"device", "status", "joints", "passive_joints", "position", "orientation", "jacobian",
+                          "condition_number", "manipulability", "torques", "gravity_torques", "force_limits",
+                          "mass_matrix", "cartesian_mass", "resolution", "singularity"}) {
+    EXPECT_TRUE(document.contains(key)) << key;
+  }
+  EXPECT_EQ(document["device"], "delta");
+  EXPECT_EQ(document["status"], "reached");
+  expect_finite(document, "");
+}
+
+TEST(At, TorquesAreGravityAndTheTransposedJacobianTimesTheLoadOnTheHand) {
+  const json document =
+      run({"at", "delta", "--joints", "10deg,20deg,30deg", "--load", "1,2,3", "--json"}).json();
+  const double load[] = {1.0, 2.0, 3.0};
+  for (size_t j = 0; j < 3; ++j) {
+    double expected = document["gravity_torques"][j];
+    for (size_t k = 0; k < 3; ++k) expected += document["jacobian"][k][j].get<double>() * load[k];
+    EXPECT_NEAR(document["torques"][j].get<double>(), expected, 1e-12);
+  }
+}
+
+TEST(At, PublishedLengthsGiveTheIndependentlyComputedPosition) {
+  // h.fk.pub0 of tests/data/delta-capstan-computed.json.
+  const json document = run({"at", "delta", "--joints", "1.138775,-0.255203,0.435359", "--json"}).json();
+  const std::vector<double> expected{-0.03931247510428882, -0.08643893500255448, 0.12786043728194746};
+  for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(document["position"][k].get<double>(), expected[k], 1e-12);
+}
+
+TEST(At, PositionGivesEveryBranchAndTheSameTool) {
+  const Outcome outcome = run({"at", "delta", "--position", "0.02,-0.03,0.12", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json document = outcome.json();
+  ASSERT_EQ(document["solutions"].size(), 8u);
+  EXPECT_TRUE(document["solutions"][0]["within_range"].get<bool>());
+  EXPECT_LT(difference(document["solutions"][0]["joints"], document["joints"]), 1e-9);
+  EXPECT_LT(difference(document["position"], json({0.02, -0.03, 0.12})), 1e-12);
+  std::set<std::string> statuses;
+  for (const json& solution : document["solutions"]) statuses.insert(solution["status"].get<std::string>());
+  EXPECT_TRUE(statuses.contains("joint_limit"));
+}
+
+TEST(At, UnitsOnTheCommandLineMeanTheSame) {
+  const json metres = run({"at", "delta", "--position", "0.02,-0.03,0.12", "--json"}).json();
+  const json millimetres = run({"at", "delta", "--position", "20 mm,-3 cm,120mm", "--json"}).json();
+  EXPECT_LT(difference(metres["joints"], millimetres["joints"]), 1e-12);
+}
+
+TEST(At, NegativeFirstNumberIsAValueAndNotAnOption) {
+  const Outcome outcome = run({"at", "delta", "--position", "-0.02,-0.03,0.12", "--json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+}
+
+TEST(At, LegsSpelledOutGiveTheSameNumbersAsTheClosedForm) {
+  const ScratchDirectory scratch;
+  const Outcome shown = run({"show", "delta", "--as", "legs"});
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  const std::string file = scratch.file("d.toml", shown.out);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> angle(-0.6, 1.4);
+  for (int i = 0; i < 10; ++i) {
+    const std::string joints = std::to_string(angle(random)) + "," + std::to_string(angle(random)) + "," +
+                               std::to_string(angle(random));
+    const std::vector<std::string> tail{"--joints", joints,           "--load", "1,2,3", "--rate",
+                                        "1,-2,0.5", "--acceleration", "3,0,-9", "--json"};
+    std::vector<std::string> closed{"at", "delta"};
+    std::vector<std::string> general{"at", file};
+    closed.insert(closed.end(), tail.begin(), tail.end());
+    general.insert(general.end(), tail.begin(), tail.end());
+    const json a = run(closed).json();
+    const Outcome outcome = run(general);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const json b = outcome.json();
+    for (const char* key : {"joints", "passive_joints", "position", "jacobian", "torques", "gravity_torques",
+                            "mass_matrix", "cartesian_mass", "velocity", "acceleration"}) {
+      EXPECT_LT(difference(a[key], b[key]), 1e-9) << key << " at " << joints;
+    }
+    // Forces and the condition number are large and depend on differences: relative.
+    for (const char* key : {"condition_number", "manipulability"}) {
+      EXPECT_NEAR(b[key].get<double>() / a[key].get<double>(), 1.0, 1e-9) << key << " at " << joints;
+    }
+    EXPECT_NEAR(b["force_limits"]["continuous"]["every_direction"].get<double>() /
+                    a["force_limits"]["continuous"]["every_direction"].get<double>(),
+                1.0, 1e-9);
+  }
+}
+
+TEST(At, SetChangesTheAnswerAsTheFileWould) {
+  const json longer =
+      run({"at", "delta", "--joints", "0,0,0", "--set", "mechanism.forearm=170 mm", "--json"}).json();
+  // All arms horizontal: the tool is on the axis, sqrt(d3^2 - (d5 + d2)^2) above the elbows.
+  EXPECT_NEAR(longer["position"][2].get<double>(), std::sqrt(0.17 * 0.17 - 0.105 * 0.105), 1e-12);
+  const json twice = run({"at", "delta", "--joints", "0,0,0", "--set", "mechanism.forearm=170 mm", "--set",
+                          "mechanism.upper_arm=90 mm", "--json"})
+                         .json();
+  EXPECT_NEAR(twice["position"][2].get<double>(), std::sqrt(0.17 * 0.17 - 0.115 * 0.115), 1e-12);
+}
+
+TEST(At, UserFrameTurnsEveryToolVector) {
+  const json device = run({"at", "delta", "--joints", "10deg,20deg,30deg", "--json"}).json();
+  const json user = run({"at", "delta", "--joints", "10deg,20deg,30deg", "--frame", "user", "--json"}).json();
+  // Both frames agree about lengths, the joints and everything seen from them.
+  const auto length = [](const json& v) {
+    return std::hypot(v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+  };
+  EXPECT_NEAR(length(device["position"]), length(user["position"]), 1e-14);
+  EXPECT_GT(difference(device["position"], user["position"]), 1e-3);
+  EXPECT_LT(difference(device["mass_matrix"], user["mass_matrix"]), 1e-15);
+  EXPECT_NEAR(device["condition_number"].get<double>(), user["condition_number"].get<double>(), 1e-10);
+  // A load and its reaction are in that frame too.
+  const std::string p = std::to_string(user["position"][0].get<double>()) + "," +
+                        std::to_string(user["position"][1].get<double>()) + "," +
+                        std::to_string(user["position"][2].get<double>());
+  const json back = run({"at", "delta", "--position", p, "--frame", "user", "--json"}).json();
+  EXPECT_LT(difference(back["joints"], device["joints"]), 1e-4);
+}
+
+TEST(At, OnlyPrintsWhatWasAsked) {
+  const json document =
+      run({"at", "delta", "--joints", "0,0,0", "--only", "position,jacobian", "--json"}).json();
+  EXPECT_EQ(document.size(), 4u);
+  EXPECT_TRUE(document.contains("device") && document.contains("status") && document.contains("position") &&
+              document.contains("jacobian"));
+}
+
+TEST(At, UnreachablePointSaysWhichLegHowFarAndTheNearestPoint) {
+  const Outcome outcome = run({"at", "delta", "--position", "0,0,0.5", "--json"});
+  EXPECT_EQ(outcome.status, 1);
+  const json document = outcome.json();
+  EXPECT_EQ(document["status"], "unreachable");
+  EXPECT_NE(document["reason"].get<std::string>().find("leg1"), std::string::npos);
+  const json& nearest = document["nearest_reachable"];
+  // The top of the workspace lies on the axis: every joint at its upper end.
+  const double theta = 84.0 * M_PI / 180.0;
+  const double r = 0.025 + 0.08 * std::cos(theta);
+  const double top = 0.08 * std::sin(theta) + std::sqrt(0.16 * 0.16 - r * r);
+  EXPECT_NEAR(nearest["position"][2].get<double>(), top, 1e-9);
+  EXPECT_NEAR(nearest["distance"].get<double>(), 0.5 - top, 1e-9);
+  EXPECT_NE(outcome.err.find("unreachable"), std::string::npos);
+}
+
+TEST(At, JointBeyondItsRangeIsNamedWithValueAndRange) {
+  const Outcome outcome = run({"at", "delta", "--joints", "10,0,0"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.out.find("joint_limit"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("theta1"), std::string::npos);
+  EXPECT_NE(outcome.out.find("radians"), std::string::npos) << "a bare 10 looks like degrees";
+}
+
+TEST(At, PointMassMassMatrixStandsBesideTheFullOne) {
+  const json document = run({"at", "delta", "--joints", "0.2,0.3,0.4", "--json"}).json();
+  const double between = difference(document["mass_matrix"], document["mass_matrix_point_mass"]);
+  EXPECT_GT(between, 0.0);
+  EXPECT_LT(between, 0.5 * document["mass_matrix"][0][0].get<double>());
+}
+
+TEST(At, ArmWithoutDrivesOrMassLeavesOutWhatIsNotKnown) {
+  const ScratchDirectory scratch;
+  const std::string file = scratch.file("arm.toml", R"([device]
+name = "arm"
+title = "Planar arm of two links"
+source = "chosen: for a test"
+[mechanism]
+type = "legs"
+platform = "rigid"
+[[leg]]
+name = "arm"
+tip = ["200 mm", 0, 0]
+attachment = "rigid"
+[[leg.joint]]
+name = "shoulder"
+type = "revolute"
+active = true
+axis = [0, 0, 1]
+point = [0, 0, 0]
+range = ["-90 deg", "90 deg"]
+[[leg.joint]]
+name = "elbow"
+type = "revolute"
+active = true
+axis = [0, 0, 1]
+point = ["100 mm", 0, 0]
+range = ["10 deg", "150 deg"]
+home = "20 deg"
+)");
+  const Outcome outcome = run({"at", file, "--joints", "30deg,60deg", "--load", "0,-2,0", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json document = outcome.json();
+  EXPECT_LT(
+      difference(document["position"], json({0.1 * std::cos(M_PI / 6), 0.1 * std::sin(M_PI / 6) + 0.1, 0.0})),
+      1e-12);
+  EXPECT_EQ(document["jacobian"].size(), 6u);
+  EXPECT_TRUE(document["condition_number"].is_null());
+  EXPECT_TRUE(document["force_limits"].is_null());
+  EXPECT_TRUE(document["notes"].contains("force_limits"));
+  // 2 N downwards on the hand, at 86.6 mm from the shoulder and straight above the elbow.
+  EXPECT_NEAR(document["torques"][0].get<double>(), -2.0 * 0.1 * std::cos(M_PI / 6), 1e-12);
+  EXPECT_NEAR(document["torques"][1].get<double>(), 0.0, 1e-12);
+  EXPECT_EQ(run({"size", file}).status, 2);
+  EXPECT_EQ(run({"workspace", file}).status, 2);
+  const Outcome report = run({"report", file, "-o", (scratch.path() / "out").string(), "--json"});
+  EXPECT_EQ(report.status, 0) << report.err;
+  EXPECT_TRUE(report.json()["notes"].contains("workspace"));
+}
+
+TEST(At, TextFitsTheWidthItIsGiven) {
+  for (const int width : {80, 120}) {
+    const Outcome outcome = run({"at", "delta", "--joints", "10deg,20deg,30deg"},
+                                {.environment = {"COLUMNS=" + std::to_string(width)}});
+    std::istringstream lines(outcome.out);
+    for (std::string line; std::getline(lines, line);) {
+      const auto starts = std::count_if(line.begin(), line.end(),
+                                        [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+      EXPECT_LE(starts, width) << line;
+    }
+    EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos) << "no colours into a file";
+  }
+}
+
+}  // namespace
+}  // namespace zwidth::testing

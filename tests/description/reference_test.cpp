@@ -1,0 +1,86 @@
+#include "zwidth/description/reference.h"
+
+#include <cstdlib>
+#include <gtest/gtest.h>
+
+#include "description/support.h"
+
+namespace zwidth {
+namespace {
+
+// The document with every table between "<!-- keys of NAME -->" and "<!-- end -->" printed anew.
+std::string updated(std::string document) {
+  for (const TableReference& table : file_reference()) {
+    const std::string begin = "<!-- keys of " + table.name + " -->\n", end = "<!-- end -->";
+    const std::size_t at = document.find(begin);
+    EXPECT_NE(at, std::string::npos) << "docs/device_file.md has no line " << begin;
+    if (at == std::string::npos) continue;
+    const std::size_t from = at + begin.size(), to = document.find(end, from);
+    document.replace(from, to - from, markdown(table));
+  }
+  return document;
+}
+
+TEST(Reference, TheDocumentHasTheKeysOfTheCode) {
+  const std::string document = text_of(ZWIDTH_DEVICE_FILE_DOC);
+  const std::string expected = updated(document);
+  if (std::getenv("ZWIDTH_UPDATE") != nullptr) {
+    std::ofstream(ZWIDTH_DEVICE_FILE_DOC) << expected;
+    return;
+  }
+  EXPECT_TRUE(document == expected)
+      << "docs/device_file.md is out of date; ZWIDTH_UPDATE=1 description_test writes it anew";
+}
+
+// A file made of nothing but the examples of the reference.
+std::string example_file() {
+  std::string text;
+  for (const TableReference& table : file_reference()) {
+    if (table.name == "delta" || table.name == "motor") {
+      if (table.name == "motor") break;
+      continue;
+    }
+    std::string header = "[[" + table.name + "]]";
+    if (table.name == "device") header = "[device]";
+    if (table.name == "legs") header = "[mechanism]";
+    if (table.name == "joint") header = "[[leg.joint]]";
+    if (table.name == "capstan") header = "[drive.transmission]";
+    if (table.name == "preloader" || table.name == "output") header = "[drive." + table.name + "]";
+    text += header + "\n";
+    for (const KeyReference& key : table.keys) {
+      if (!key.example.empty() && key.key != "transmission" && key.key != "joints")
+        text += key.key + " = " + key.example + "\n";
+    }
+  }
+  return text;
+}
+
+TEST(Reference, ItsExamplesMakeAFileThatReads) {
+  const std::vector<Problem> problems = problems_of(example_file());
+  for (const Problem& problem : problems) ADD_FAILURE() << to_string(problem) << "\n" << example_file();
+}
+
+TEST(Reference, TheExamplesOfADeltaRead) {
+  for (const TableReference& table : file_reference()) {
+    if (table.name != "delta") continue;
+    std::string text = "[device]\nname = \"x\"\n[mechanism]\n";
+    for (const KeyReference& key : table.keys) {
+      if (!key.example.empty()) text += key.key + " = " + key.example + "\n";
+    }
+    EXPECT_TRUE(problems_of(text).empty()) << text;
+  }
+}
+
+TEST(Reference, ThePartsOfTheCatalogueHaveNoOtherKeys) {
+  for (const TableReference& table : file_reference()) {
+    if (table.name != "motor") continue;
+    for (const PartValue& value : part_values(catalogue().all<Motor>().front())) {
+      EXPECT_TRUE(std::any_of(table.keys.begin(), table.keys.end(), [&](const KeyReference& key) {
+        return key.key == value.key;
+      })) << value.key;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace zwidth

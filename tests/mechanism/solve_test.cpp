@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include "support/deltas.h"
+#include "support/storm.h"
+
+#include "zwidth/mechanism/jacobian.h"
+#include "zwidth/mechanism/posture.h"
+
+namespace zwidth {
+namespace {
+
+const SolveOptions kGeneral{.closed_form = false};
+
+Mechanism published() {
+  return Mechanism(test::with_bodies(test::published_delta()));
+}
+
+TEST(SolveForward, GeneralSolverAgreesWithTheClosedForm) {
+  std::mt19937_64 random(11);
+  const Mechanism delta = published();
+  double worst = 0.0;
+  for (int k = 0; k < test::storm_size(100000); ++k) {
+    const Vector3 theta = test::random_angles(random, test::published_delta().joint_range);
+    const Solution general = solve_forward(delta, theta, kGeneral);
+    ASSERT_EQ(general.status, SolveStatus::reached) << theta.transpose();
+    worst = std::max(worst,
+                     (general.posture->tool().position - delta_forward(*delta.delta(), theta).position).norm());
+  }
+  EXPECT_LT(worst, 1e-9);
+}
+
+TEST(SolveForward, GeneralSolverAgreesOnRandomDeltasAndTheirPassiveJoints) {
+  std::mt19937_64 random(12);
+  int compared = 0;
+  for (int d = 0; d < 200; ++d) {
+    const DeltaDescription description = test::random_delta(random);
+    // Where an elbow crosses the axis, "the mode with the larger z" is not the mode one arrives in.
+    const double most = std::max(std::abs(description.joint_range.min), std::abs(description.joint_range.max));
+    if (delta_geometry(description).offset() + description.upper_arm * std::cos(most) <= 0.0) continue;
+    const Mechanism delta(test::with_bodies(description));
+    for (int k = 0; k < 20; ++k) {
+      const Vector3 theta = test::random_angles(random, description.joint_range);
+      const Solution closed = solve_forward(delta, theta);
+      if (!closed || closed.conditioning < 1e-2) continue;
+      const Solution general = solve_forward(delta, theta, kGeneral);
+      ASSERT_TRUE(general) << "delta " << d << " at " << theta.transpose();
+      EXPECT_LT((general.posture->joints() - closed.posture->joints()).norm(), 1e-9);
+      EXPECT_LT((general.posture->tool().position - closed.posture->tool().position).norm(), 1e-9);
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 2000);
+}
+
+TEST(SolveForward, ParallelogramsHoldAFreePlatformParallel) {
+  std::mt19937_64 random(13);
+  const DeltaDescription description = test::published_delta();
+  const Mechanism delta(test::with_parallelograms(description));
+  ASSERT_EQ(delta.tool_rows(), 6);
+  for (int k = 0; k < 2000; ++k) {
+    const Vector3 theta = test::random_angles(random, description.joint_range);
+    const Solution solution = solve_forward(delta, theta);
+    ASSERT_EQ(solution.status, SolveStatus::reached);
+    EXPECT_LT((solution.posture->tool().rotation - Matrix3::Identity()).norm(), 1e-10);
+    EXPECT_LT(
+        (solution.posture->tool().position - delta_forward(delta_geometry(description), theta).position).norm(),
+        1e-10);
+  }
+}
+
+TEST(SolveForward, FollowsTheStartInFewSteps) {
+  std::mt19937_64 random(14);
+  const Mechanism delta = published();
+  Vector3 theta(0.3, 0.4, 0.5);
+  Solution last = solve_forward(delta, theta, kGeneral);
+  for (int k = 0; k < 1000; ++k) {
+    theta += test::random_angles(random, {-0.01, 0.01});
+    theta = theta.cwiseMax(-0.6).cwiseMin(1.4);
+    const Solution next = solve_forward(delta, theta, {.start = &*last.posture, .closed_form = false});
+    ASSERT_EQ(next.status, SolveStatus::reached);
+    EXPECT_LE(next.iterations, 4);
+    EXPECT_LE(next.residual, 1e-12 * delta.characteristic_length());
+    last = next;
+  }
+}
+
+TEST(SolveForward, SaysUnreachableWithTheGapThatIsLeft) {
+  DeltaDescription description = test::published_delta();
+  description.forearm = 0.1;  // closes at large angles only
+  description.joint_range = {0.0, 1.4};
+  const Mechanism delta(test::with_bodies(description));
+  EXPECT_EQ(solve_forward(delta, Vector3(0.0, 0.0, 0.0)).status, SolveStatus::unreachable);
+  const Solution general = solve_forward(delta, Vector3(0.0, 0.0, 0.0), kGeneral);
+  EXPECT_EQ(general.status, SolveStatus::unreachable);
+  EXPECT_GT(general.residual, kGeneral.tolerance * delta.characteristic_length());
+  EXPECT_FALSE(general);
+}
+
+TEST(SolveForward, AnglesBeyondTheRangeAnswerJointLimitWithThePosture) {
+  const Mechanism delta = published();
+  for (const bool closed_form : {true, false}) {
+    const Solution solution = solve_forward(delta, Vector3(0.0, 0.0, 1.6), {.closed_form = closed_form});
+    EXPECT_EQ(solution.status, SolveStatus::joint_limit);
+    EXPECT_EQ(solution.joint, delta.active_joint(2));
+    ASSERT_TRUE(solution);
+  }
+}
+
+TEST(SolveInverse, GeneralSolverAgreesWithTheClosedForm) {
+  std::mt19937_64 random(15);
+  const Mechanism delta = published();
+  for (int k = 0; k < test::storm_size(20000); ++k) {
+    const Vector3 theta = test::random_angles(random, test::published_delta().joint_range);
+    const Pose tool{.position = delta_forward(*delta.delta(), theta).position};
+    const Solution general = solve_inverse(delta, tool, kGeneral);
+    ASSERT_EQ(general.status, SolveStatus::reached) << theta.transpose();
+    EXPECT_LT((general.posture->active() - theta).norm(), 1e-9);
+  }
+}
+
+TEST(SolveInverse, BothSolversCallTheSamePointsUnreachable) {
+  std::mt19937_64 random(16);
+  const Mechanism delta = published();
+  int in = 0, out = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Pose tool{.position = {test::uniform(random, -0.2, 0.2), test::uniform(random, -0.2, 0.2),
+                                 test::uniform(random, 0.0, 0.3)}};
+    const Solution closed = solve_inverse(delta, tool);
+    if (closed && closed.conditioning < 1e-3) continue;  // on the boundary either answer is right
+    const Solution general = solve_inverse(delta, tool, kGeneral);
+    EXPECT_EQ(general.status == SolveStatus::unreachable, closed.status == SolveStatus::unreachable)
+        << tool.position.transpose();
+    ++(closed ? in : out);
+  }
+  EXPECT_GT(in, 300);
+  EXPECT_GT(out, 300);
+}
+
+TEST(SolveInverseAll, GeneralSolverFindsTheSameEightBranches) {
+  const Mechanism delta = published();
+  const Pose tool{.position = {0.02, -0.03, 0.12}};
+  const std::vector<Solution> closed = solve_inverse_all(delta, tool),
+                              general = solve_inverse_all(delta, tool, kGeneral);
+  ASSERT_EQ(closed.size(), 8u);
+  ASSERT_EQ(general.size(), 8u);
+  for (const Solution& one : closed) {
+    double nearest = 1e9;
+    for (const Solution& other : general) {
+      nearest = std::min(nearest, (one.posture->active() - other.posture->active()).norm());
+    }
+    EXPECT_LT(nearest, 1e-9);
+  }
+  EXPECT_EQ(closed.front().status, SolveStatus::reached);
+  EXPECT_LT((closed.front().posture->active() - general.front().posture->active()).norm(), 1e-9);
+}
+
+TEST(SolveInverseAll, IsEmptyOutOfReach) {
+  const Mechanism delta = published();
+  EXPECT_TRUE(solve_inverse_all(delta, {.position = {0.0, 0.0, 0.5}}).empty());
+  EXPECT_TRUE(solve_inverse_all(delta, {.position = {0.0, 0.0, 0.5}}, kGeneral).empty());
+}
+
+}  // namespace
+}  // namespace zwidth

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "zwidth/math/spatial.h"
+
+/// What a reference case can ask for. Every quantity is a call of the library; nothing is computed here.
+
+namespace zwidth::reference {
+
+/// An answer that is an error by name ("unreachable", "invalid_argument", ...).
+class Refusal : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The inputs of one case. A missing key throws std::out_of_range with its name.
+class Inputs {
+ public:
+  explicit Inputs(const nlohmann::json& values) : values_(values) {}
+
+  bool has(const std::string& key) const { return values_.contains(key); }
+  double number(const std::string& key) const;
+  double number_or(const std::string& key, double fallback) const { return has(key) ? number(key) : fallback; }
+  int integer(const std::string& key) const;
+  /// Three numbers; a single one stands for three equal ones.
+  Vector3 vector(const std::string& key) const;
+  double degrees(const std::string& key) const;  ///< given in deg, in rad
+
+ private:
+  const nlohmann::json& values_;
+};
+
+/// An answer: a number, or an array row by row.
+using Values = std::vector<double>;
+using Quantity = std::function<Values(const Inputs&)>;
+using Quantities = std::map<std::string, Quantity>;
+
+void add_delta(Quantities& quantities);
+void add_actuation(Quantities& quantities);
+
+}  // namespace zwidth::reference

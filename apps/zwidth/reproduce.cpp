@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <memory>
 
@@ -9,10 +8,6 @@
 /// `zwidth reproduce`: published against computed.
 
 namespace zwidth {
-
-bool ReproducedFigure::ok() const {
-  return std::abs(difference()) <= tolerance;
-}
 
 namespace {
 

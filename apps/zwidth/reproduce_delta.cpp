@@ -40,41 +40,6 @@ const PrintedUnit kMetre{"m", "m", 1.0}, kMillimetre{"mm", "m", 1e-3}, kSquareMe
     kDamping{"N s/m", "N s/m", 1.0}, kInertia{"10⁻⁴ kg m²", "kg m^2", 1e-4},
     kHundredMicroTorque{"10⁻⁴ N m", "N m", 1e-4};
 
-// Collects figures; `under` sets the heading they stand under.
-class Figures {
- public:
-  void under(std::string heading) { heading_ = std::move(heading); }
-
-  ReproducedFigure& add(const std::string& id, const std::string& what, const PrintedUnit& unit, int decimals,
-                        double printed, double computed_si) {
-    ReproducedFigure figure;
-    figure.id = "delta." + id;
-    figure.source = heading_;
-    figure.what = what;
-    figure.unit = unit;
-    figure.decimals = decimals;
-    figure.printed = printed * unit.factor;
-    figure.computed = computed_si;
-    // Half a unit of the last printed digit, and what rounding adds to it.
-    figure.tolerance = 0.501 * std::pow(10.0, -decimals) * unit.factor;
-    figures_.push_back(figure);
-    return figures_.back();
-  }
-
-  std::vector<ReproducedFigure> take() { return std::move(figures_); }
-
- private:
-  std::string heading_;
-  std::vector<ReproducedFigure> figures_;
-};
-
-// A figure that only one reading of the source gives, and what another reading has.
-void read_otherwise(ReproducedFigure& figure, std::string reading, std::string label, double value,
-                    std::string how) {
-  figure.reading = std::move(reading);
-  figure.other = {std::move(label), value, std::move(how)};
-}
-
 Mechanism with_window(Description description, double min_degrees, double max_degrees) {
   std::get<DeltaDescription>(description.mechanism).joint_range = {min_degrees * kDegree,
                                                                    max_degrees * kDegree};
@@ -371,7 +336,7 @@ std::vector<Erratum> errata() {
 Reproduction reproduce_delta(const Catalogue& catalogue) {
   const Description description = read_description("delta", {}, catalogue);
   const Drive drive(description.drives.front(), std::get<DeltaDescription>(description.mechanism).joint_range);
-  Figures figures;
+  Figures figures("delta");
   workspace_figures(figures, description, drive);
   actuator_figures(figures, drive);
   motor_figures(figures, drive);

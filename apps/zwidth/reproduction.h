@@ -60,6 +60,29 @@ struct Reproduction {
   std::vector<std::string> measured_only;  ///< what only a bench can tell
 };
 
+/// Collects the figures of one source; `under` sets the heading that the next ones stand under.
+class Figures {
+ public:
+  explicit Figures(std::string device) : device_(std::move(device)) {}
+
+  void under(std::string heading) { heading_ = std::move(heading); }
+  /// A figure printed with `decimals` digits after the point in `unit`, and the computed one [SI]. The
+  /// tolerance is half a unit of the last digit; widen it in what comes back where the source is less exact.
+  ReproducedFigure& add(const std::string& id, const std::string& what, const PrintedUnit& unit, int decimals,
+                        double printed, double computed_si);
+
+  std::vector<ReproducedFigure> take() { return std::move(figures_); }
+
+ private:
+  std::string device_;
+  std::string heading_;
+  std::vector<ReproducedFigure> figures_;
+};
+
+/// Marks a figure that only one reading of the source gives, and says what another reading has [SI].
+void read_otherwise(ReproducedFigure& figure, std::string reading, std::string label, double value,
+                    std::string how);
+
 /// Neal 2015.
 Reproduction reproduce_delta(const Catalogue& catalogue);
 

@@ -44,7 +44,8 @@ inline std::vector<std::filesystem::path> files(const std::filesystem::path& fol
       entry.disable_recursion_pending();
       continue;
     }
-    if (entry->is_regular_file()) result.push_back(entry->path());
+    // In a git worktree .git is a file.
+    if (entry->is_regular_file() && base != ".git") result.push_back(entry->path());
   }
   std::sort(result.begin(), result.end());
   return result;

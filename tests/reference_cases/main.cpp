@@ -12,26 +12,6 @@
 
 namespace zwidth::reference {
 
-double Inputs::number(const std::string& key) const {
-  if (!values_.contains(key)) throw std::out_of_range("the case has no input " + key);
-  return values_.at(key).get<double>();
-}
-
-int Inputs::integer(const std::string& key) const {
-  return static_cast<int>(std::lround(number(key)));
-}
-
-Vector3 Inputs::vector(const std::string& key) const {
-  if (!values_.contains(key)) throw std::out_of_range("the case has no input " + key);
-  const nlohmann::json& value = values_.at(key);
-  if (value.is_number()) return Vector3::Constant(value.get<double>());
-  return {value.at(0).get<double>(), value.at(1).get<double>(), value.at(2).get<double>()};
-}
-
-double Inputs::degrees(const std::string& key) const {
-  return number(key) * std::numbers::pi / 180.0;
-}
-
 namespace {
 
 using nlohmann::json;
@@ -40,15 +20,75 @@ void flatten(const json& value, Values& out) {
   if (value.is_array()) {
     for (const json& element : value) flatten(element, out);
   } else {
-    out.push_back(value.get<double>());
+    out.push_back(value.is_boolean() ? static_cast<double>(value.get<bool>()) : value.get<double>());
   }
 }
+
+const json& required(const json& values, const std::string& key) {
+  if (!values.contains(key)) throw std::out_of_range("the case has no input " + key);
+  return values.at(key);
+}
+
+}  // namespace
+
+double Inputs::number(const std::string& key) const {
+  return required(values_, key).get<double>();
+}
+
+int Inputs::integer(const std::string& key) const {
+  return static_cast<int>(std::lround(number(key)));
+}
+
+Vector3 Inputs::vector(const std::string& key) const {
+  const json& value = required(values_, key);
+  if (value.is_number()) return Vector3::Constant(value.get<double>());
+  return {value.at(0).get<double>(), value.at(1).get<double>(), value.at(2).get<double>()};
+}
+
+double Inputs::degrees(const std::string& key) const {
+  return number(key) * std::numbers::pi / 180.0;
+}
+
+std::vector<double> Inputs::list(const std::string& key) const {
+  Values values;
+  flatten(required(values_, key), values);
+  return values;
+}
+
+bool Inputs::flag(const std::string& key) const {
+  return required(values_, key).get<bool>();
+}
+
+std::string Inputs::text(const std::string& key) const {
+  return required(values_, key).get<std::string>();
+}
+
+namespace {
 
 struct Tally {
   int passed = 0;
   int failed = 0;
   int cases_left_out = 0;
   std::set<std::string> left_out;
+};
+
+// How far an element may lie from its reference: a number, or { abs, rel } of which rel is a share of the
+// element.
+struct Tolerance {
+  double absolute = 0.0;
+  double relative = 0.0;
+
+  explicit Tolerance(const json& one) {
+    if (!one.contains("tolerance")) return;
+    const json& given = one.at("tolerance");
+    absolute = given.is_object() ? given.value("abs", 0.0) : given.get<double>();
+    if (given.is_object()) relative = given.value("rel", 0.0);
+  }
+  double of(double reference) const { return absolute + relative * std::abs(reference); }
+  std::string shown() const {
+    return relative > 0.0 ? fmt::format("{:.2e} + {:.2e} of it", absolute, relative)
+                          : fmt::format("{:.2e}", absolute);
+  }
 };
 
 std::string shown(const Values& values) {
@@ -65,23 +105,29 @@ void run_case(const Quantities& quantities, const json& one, Tally& tally) {
     return;
   }
   const json& wanted = one.at("value");
-  const double tolerance = one.value("tolerance", 0.0);
+  const Tolerance tolerance(one);
   std::string expected = wanted.is_string() ? wanted.get<std::string>() : "", got, difference = "-";
   bool ok = false;
   try {
-    const Values values = found->second(Inputs(one.at("inputs")));
-    got = shown(values);
-    if (!wanted.is_string()) {
+    const Answer answer = found->second(Inputs(one.at("inputs")));
+    if (const auto* name = std::get_if<std::string>(&answer)) {
+      got = *name;
+      ok = wanted.is_string() && expected == got;
+    } else if (const Values& values = std::get<Values>(answer); wanted.is_string()) {
+      got = shown(values);
+    } else {
+      got = shown(values);
       Values reference;
       flatten(wanted, reference);
       expected = shown(reference);
       double worst = reference.size() == values.size() ? 0.0 : HUGE_VAL;
+      ok = reference.size() == values.size();
       for (std::size_t i = 0; i < reference.size() && i < values.size(); ++i) {
         const double apart = std::abs(values[i] - reference[i]);
         worst = std::isnan(apart) ? HUGE_VAL : std::max(worst, apart);
+        ok = ok && apart <= tolerance.of(reference[i]);
       }
       difference = fmt::format("{:.2e}", worst);
-      ok = worst <= tolerance;
     }
   } catch (const Refusal& refusal) {
     got = fmt::format("error:{}", refusal.what());
@@ -94,14 +140,15 @@ void run_case(const Quantities& quantities, const json& one, Tally& tally) {
   }
   if (!wanted.is_string() && expected.empty()) expected = wanted.dump();
   ++(ok ? tally.passed : tally.failed);
-  fmt::print("{:<4} {}  {}  expected {}  got {}  difference {}  tolerance {:.2e} {}\n", ok ? "ok" : "MISS", id,
-             quantity, expected, got, difference, tolerance, one.value("unit", ""));
+  fmt::print("{:<4} {}  {}  expected {}  got {}  difference {}  tolerance {} {}\n", ok ? "ok" : "MISS", id,
+             quantity, expected, got, difference, tolerance.shown(), one.value("unit", ""));
 }
 
 int run(const std::vector<std::string>& files) {
   Quantities quantities;
   add_delta(quantities);
   add_actuation(quantities);
+  add_r_cube(quantities);
   Tally tally;
   for (const std::string& file : files) {
     std::ifstream stream(file);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "zwidth/math/spatial.h"
@@ -31,17 +32,24 @@ class Inputs {
   /// Three numbers; a single one stands for three equal ones.
   Vector3 vector(const std::string& key) const;
   double degrees(const std::string& key) const;  ///< given in deg, in rad
+  /// An array of numbers of any length; nested ones row by row.
+  std::vector<double> list(const std::string& key) const;
+  bool flag(const std::string& key) const;
+  std::string text(const std::string& key) const;
 
  private:
   const nlohmann::json& values_;
 };
 
-/// An answer: a number, or an array row by row.
+/// An answer in numbers: one, or an array row by row. Yes is 1 and no is 0.
 using Values = std::vector<double>;
-using Quantity = std::function<Values(const Inputs&)>;
+/// Numbers, or a name.
+using Answer = std::variant<Values, std::string>;
+using Quantity = std::function<Answer(const Inputs&)>;
 using Quantities = std::map<std::string, Quantity>;
 
 void add_delta(Quantities& quantities);
 void add_actuation(Quantities& quantities);
+void add_r_cube(Quantities& quantities);
 
 }  // namespace zwidth::reference

@@ -3,24 +3,13 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <gtest/gtest.h>
 #include <limits>
 #include <numbers>
 #include <random>
 #include <stdexcept>
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define ZWIDTH_COUNTS_ALLOCATIONS
-namespace {
-thread_local long allocations = 0;
-}
-extern "C" void* __libc_malloc(std::size_t size);
-extern "C" void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-#endif
+#include "support/allocation_counter.h"
 
 namespace zwidth {
 namespace {
@@ -114,24 +103,20 @@ TEST(ZeroOrderHold, RefusesAPeriodThatIsNotPositive) {
 }
 
 TEST(DiscreteSystem, StepsWithoutAllocating) {
-#ifdef ZWIDTH_COUNTS_ALLOCATIONS
   std::mt19937 random(3);
   const DiscreteSystem system =
       random_stable_system(random, kMaxStates, kMaxPorts, kMaxPorts).zero_order_hold(1e-3);
   StateVector x = StateVector::Zero(kMaxStates);
   const PortVector u = PortVector::Ones(kMaxPorts);
   PortVector y;
-  const long before = allocations;
+  const long before = test::allocations();
   for (int k = 0; k < 100; ++k) {
     y = system.output(x, u);
     x = system.next(x, u);
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(test::allocations(), before);
   EXPECT_TRUE(y.allFinite());
   static_assert(noexcept(system.next(x, u))&& noexcept(system.output(x, u)));
-#else
-  GTEST_SKIP() << "the sanitizer owns malloc";
-#endif
 }
 
 TEST(DiscreteSystem, PolesAreExponentialsOfTheContinuousOnes) {

@@ -1,0 +1,169 @@
+#include "zwidth/analysis/dexterity.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+#include "zwidth/math/svd.h"
+
+namespace zwidth {
+namespace {
+
+double conditioning(const Jacobian& jacobian) {
+  const double number = dexterity(jacobian).condition_number;
+  return std::isfinite(number) ? 1.0 / number : 0.0;
+}
+
+double mean_conditioning(std::span<const Jacobian> jacobians, const JacobianUnits& units, double length) {
+  double sum = 0.0;
+  for (const Jacobian& jacobian : jacobians) sum += conditioning(homogeneous(jacobian, units, length));
+  return sum / static_cast<double>(jacobians.size());
+}
+
+}  // namespace
+
+bool JacobianUnits::homogeneous(const Jacobian& jacobian) const {
+  const int n = static_cast<int>(jacobian.cols());
+  int sliding = 0;
+  for (int j = 0; j < n; ++j) sliding += slides(j) ? 1 : 0;
+  const bool rows_alike = linear_rows == jacobian.rows() || linear_rows == 0;
+  return rows_alike && (sliding == 0 || sliding == n);
+}
+
+Jacobian homogeneous(const Jacobian& jacobian, const JacobianUnits& units, double length) {
+  assert(length > 0.0 && units.linear_rows <= jacobian.rows());
+  Jacobian result = jacobian;
+  result.bottomRows(jacobian.rows() - units.linear_rows) *= length;
+  for (int j = 0; j < jacobian.cols(); ++j) {
+    if (units.slides(j)) result.col(j) *= length;
+  }
+  return result;
+}
+
+CharacteristicLength characteristic_length(const Jacobian& jacobian, const JacobianUnits& units) {
+  return characteristic_length(std::span(&jacobian, 1), units);
+}
+
+CharacteristicLength characteristic_length(std::span<const Jacobian> jacobians, const JacobianUnits& units) {
+  assert(!jacobians.empty());
+  const auto result_at = [&](double length) {
+    const double figure = mean_conditioning(jacobians, units, length);
+    return CharacteristicLength{length, figure, 1.0 / figure};
+  };
+  const bool alike =
+      std::all_of(jacobians.begin(), jacobians.end(), [&](const Jacobian& J) { return units.homogeneous(J); });
+  if (alike) return result_at(1.0);
+  // Around the ratio of the sizes of the two kinds of entries. Of one Jacobian the logarithm of the condition
+  // number is convex in that of the length (three-lines theorem), so a raster brackets the one minimum; of
+  // several it finds the best valley.
+  double linear = 0.0, angular = 0.0;
+  for (const Jacobian& J : jacobians) {
+    linear += J.topRows(units.linear_rows).squaredNorm();
+    angular += J.bottomRows(J.rows() - units.linear_rows).squaredNorm();
+  }
+  const double middle = linear > 0.0 && angular > 0.0 ? 0.5 * std::log(linear / angular) : 0.0;
+  constexpr double kDecades = 6.0;
+  constexpr int kRaster = 120;
+  const double step = 2.0 * kDecades * std::log(10.0) / kRaster;
+  const auto at = [&](double log_length) { return mean_conditioning(jacobians, units, std::exp(log_length)); };
+  int best = 0;
+  double best_value = -1.0;
+  for (int k = 0; k <= kRaster; ++k) {
+    const double value = at(middle + step * (k - kRaster / 2));
+    if (value > best_value) {
+      best_value = value;
+      best = k;
+    }
+  }
+  if (!(best_value > 0.0)) return result_at(1.0);
+  // Golden section within the neighbours.
+  double low = middle + step * (best - 1 - kRaster / 2), high = low + 2.0 * step;
+  constexpr double kGolden = 0.61803398874989485;
+  double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
+  double at_left = at(left), at_right = at(right);
+  while (high - low > 1e-10) {
+    if (at_left >= at_right) {
+      high = right;
+      right = left;
+      at_right = at_left;
+      left = high - kGolden * (high - low);
+      at_left = at(left);
+    } else {
+      low = left;
+      left = right;
+      at_left = at_right;
+      right = low + kGolden * (high - low);
+      at_right = at(right);
+    }
+  }
+  return result_at(std::exp(0.5 * (low + high)));
+}
+
+double isotropy(const Jacobian& jacobian) {
+  const auto m = jacobian.rows();
+  if (jacobian.cols() < m) return 0.0;
+  const SmallVector sigma = svd(jacobian).sigma;
+  const double mean = sigma.squaredNorm() / static_cast<double>(m);
+  if (!(sigma[m - 1] > 0.0)) return 0.0;
+  double logarithms = 0.0;
+  for (const double value : sigma) logarithms += 2.0 * std::log(value);
+  return std::min(1.0, std::exp(logarithms / static_cast<double>(m)) / mean);
+}
+
+void GlobalConditioning::add(double condition_number, double weight) {
+  assert(condition_number >= 1.0 && weight >= 0.0);
+  const double value = std::isfinite(condition_number) ? 1.0 / condition_number : 0.0;
+  worst_ = std::min(worst_, value);
+  best_ = std::max(best_, value);
+  if (weight == 0.0) return;
+  // Updated as it goes (West 1979), so that a small spread survives many samples.
+  weight_ += weight;
+  const double gap = value - mean_;
+  mean_ += gap * weight / weight_;
+  squares_ += weight * gap * (value - mean_);
+}
+
+void GlobalConditioning::add(const GlobalConditioning& other) {
+  worst_ = std::min(worst_, other.worst_);
+  best_ = std::max(best_, other.best_);
+  if (other.weight_ == 0.0) return;
+  const double gap = other.mean_ - mean_, total = weight_ + other.weight_;
+  squares_ += other.squares_ + gap * gap * weight_ * other.weight_ / total;
+  mean_ += gap * other.weight_ / total;
+  weight_ = total;
+}
+
+double GlobalConditioning::index() const {
+  return mean_;
+}
+
+double GlobalConditioning::spread() const {
+  return weight_ > 0.0 ? std::sqrt(std::max(0.0, squares_ / weight_)) : 0.0;
+}
+
+double task_volume(const Jacobian& jacobian) {
+  return dexterity(jacobian).manipulability;
+}
+
+ConditionClass condition_class(double condition_number) {
+  if (condition_number < 5.0) return ConditionClass::below_5;
+  if (condition_number <= 10.0) return ConditionClass::from_5_to_10;
+  return condition_number <= 100.0 ? ConditionClass::from_10_to_100 : ConditionClass::above_100;
+}
+
+const char* to_string(ConditionClass condition_class) {
+  switch (condition_class) {
+    case ConditionClass::below_5:
+      return "K < 5";
+    case ConditionClass::from_5_to_10:
+      return "5 to 10";
+    case ConditionClass::from_10_to_100:
+      return "10 to 100";
+    case ConditionClass::above_100:
+      return "K > 100";
+  }
+  return "";
+}
+
+}  // namespace zwidth

@@ -1,0 +1,138 @@
+#include "zwidth/analysis/dexterity.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+#include <vector>
+
+namespace zwidth {
+namespace {
+
+double uniform(std::mt19937_64& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+Jacobian random_jacobian(std::mt19937_64& random, int joints) {
+  Jacobian J(6, joints);
+  for (int j = 0; j < joints; ++j) {
+    for (int i = 0; i < 6; ++i) J(i, j) = uniform(random, -1.0, 1.0) * (i < 3 ? 0.2 : 1.0);
+  }
+  return J;
+}
+
+double condition_at(const Jacobian& J, const JacobianUnits& units, double length) {
+  return dexterity(homogeneous(J, units, length)).condition_number;
+}
+
+TEST(CharacteristicLength, NoOtherLengthIsBetter) {
+  std::mt19937_64 random(61);
+  for (int round = 0; round < 40; ++round) {
+    const Jacobian J = random_jacobian(random, 6 + round % 3);
+    JacobianUnits units;
+    if (round % 4 == 3) units.sliding_joints = 1U << (round % 6);
+    const CharacteristicLength best = characteristic_length(J, units);
+    EXPECT_NEAR(best.condition_number, condition_at(J, units, best.length), 1e-9 * best.condition_number);
+    for (double power = -4.0; power <= 3.0; power += 0.01) {
+      EXPECT_LE(best.condition_number, condition_at(J, units, std::pow(10.0, power)) * (1.0 + 1e-9));
+    }
+  }
+}
+
+TEST(CharacteristicLength, GrowsWithTheDevice) {
+  std::mt19937_64 random(62);
+  const Jacobian J = random_jacobian(random, 7);
+  Jacobian larger = J;
+  larger.topRows(3) *= 3.7;
+  const CharacteristicLength a = characteristic_length(J, {}), b = characteristic_length(larger, {});
+  EXPECT_NEAR(b.length / a.length, 3.7, 1e-6);
+  EXPECT_NEAR(b.condition_number, a.condition_number, 1e-9 * a.condition_number);
+}
+
+TEST(CharacteristicLength, OfOneKindOfRowsChangesNothing) {
+  std::mt19937_64 random(63);
+  const Jacobian J = random_jacobian(random, 6).topRows(3);
+  EXPECT_NEAR(characteristic_length(J, {}).condition_number, dexterity(J).condition_number, 1e-12);
+  EXPECT_EQ(characteristic_length(J, {}).length, 1.0);
+  const Jacobian singular = Jacobian::Zero(6, 6);
+  EXPECT_EQ(characteristic_length(singular, {}).conditioning, 0.0);
+}
+
+TEST(CharacteristicLength, OfManyPosturesMakesTheMeanLargest) {
+  std::mt19937_64 random(64);
+  std::vector<Jacobian> postures;
+  for (int k = 0; k < 20; ++k) postures.push_back(random_jacobian(random, 6));
+  const CharacteristicLength best = characteristic_length(postures, {});
+  for (double power = -4.0; power <= 2.0; power += 0.02) {
+    double mean = 0.0;
+    for (const Jacobian& J : postures) mean += 1.0 / condition_at(J, {}, std::pow(10.0, power)) / 20.0;
+    EXPECT_LE(mean, best.conditioning + 1e-9);
+  }
+}
+
+TEST(Homogeneous, MultipliesAngularRows) {
+  Jacobian J(6, 6);
+  J << 0.1, 0, 0, 0, 0.02, 0, 0, 0.12, 0, -0.02, 0, 0, 0, 0, 0.09, 0, 0, 0.01, 0, 0.5, 0, 1, 0, 0, 0.4, 0, 0, 0,
+      1, 0, 0, 0, 0.3, 0, 0, 1;
+  EXPECT_NEAR(condition_at(J, {}, 0.1), 1.8931074441034212, 1e-9);
+}
+
+TEST(Isotropy, IsOneForEqualSingularValuesOnly) {
+  std::mt19937_64 random(65);
+  const double l1 = std::sqrt(2.0), q2 = 3.0 * std::atan(1.0);
+  Jacobian arm(2, 2);  // isotropic: l1 = sqrt(2) l2 at 135 degrees (Salisbury & Craig 1982)
+  arm << -std::sin(q2), -std::sin(q2), l1 + std::cos(q2), std::cos(q2);
+  EXPECT_NEAR(isotropy(arm), 1.0, 1e-12);
+  EXPECT_NEAR(dexterity(arm).condition_number, 1.0, 1e-12);
+  for (int round = 0; round < 50; ++round) {
+    const Jacobian J = random_jacobian(random, 6).topRows(3);
+    const double figure = isotropy(J);
+    EXPECT_GT(figure, 0.0);
+    EXPECT_LT(figure, 1.0);
+    const Matrix3 A = J * J.transpose();
+    EXPECT_NEAR(figure, std::cbrt(A.determinant()) / (A.trace() / 3.0), 1e-9);
+  }
+  EXPECT_EQ(isotropy(Jacobian::Zero(3, 3)), 0.0);
+  EXPECT_EQ(isotropy(Jacobian::Ones(3, 2)), 0.0);
+}
+
+TEST(GlobalConditioning, OfATwoJointArmBySamplesOfItsJoints) {
+  // 1/K depends on q2 alone and the area element on |sin q2|: 0.43604330568173477 for l1 = sqrt(2), l2 = 1.
+  GlobalConditioning whole, left, right;
+  const int steps = 20000;
+  for (int k = 0; k < steps; ++k) {
+    const double q2 = 3.14159265358979323846 * (k + 0.5) / steps;
+    Jacobian J(2, 2);
+    J << -std::sin(q2), -std::sin(q2), std::sqrt(2.0) + std::cos(q2), std::cos(q2);
+    const double number = dexterity(J).condition_number;
+    whole.add(number, task_volume(J));
+    (k < 7000 ? left : right).add(number, task_volume(J));
+  }
+  EXPECT_NEAR(whole.index(), 0.43604330568173477, 1e-6);
+  left.add(right);
+  EXPECT_NEAR(left.index(), whole.index(), 1e-12);
+  EXPECT_NEAR(left.spread(), whole.spread(), 1e-9);
+  EXPECT_EQ(left.worst(), whole.worst());
+}
+
+TEST(GlobalConditioning, CountsSingularSamplesAsZero) {
+  GlobalConditioning figure;
+  EXPECT_EQ(figure.index(), 0.0);
+  figure.add(2.0);
+  figure.add(std::numeric_limits<double>::infinity());
+  EXPECT_DOUBLE_EQ(figure.index(), 0.25);
+  EXPECT_EQ(figure.worst(), 0.0);
+  EXPECT_EQ(figure.best(), 0.5);
+  EXPECT_DOUBLE_EQ(figure.spread(), 0.25);
+}
+
+TEST(ConditionClass, HasTheLimitsOfItsSource) {
+  EXPECT_EQ(condition_class(4.999), ConditionClass::below_5);
+  EXPECT_EQ(condition_class(5.0), ConditionClass::from_5_to_10);
+  EXPECT_EQ(condition_class(10.0), ConditionClass::from_5_to_10);
+  EXPECT_EQ(condition_class(10.001), ConditionClass::from_10_to_100);
+  EXPECT_EQ(condition_class(100.0), ConditionClass::from_10_to_100);
+  EXPECT_EQ(condition_class(std::numeric_limits<double>::infinity()), ConditionClass::above_100);
+}
+
+}  // namespace
+}  // namespace zwidth

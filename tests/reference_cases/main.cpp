@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <numbers>
+#include <regex>
 #include <set>
 
 #include "quantities.h"
@@ -16,11 +19,19 @@ namespace {
 
 using nlohmann::json;
 
+// JSON has no NaN and no infinity: null and "inf" stand for them.
+double number_of(const json& value) {
+  if (value.is_boolean()) return value.get<bool>() ? 1.0 : 0.0;
+  if (value.is_null()) return std::nan("");
+  if (value == "inf") return HUGE_VAL;
+  return value.get<double>();
+}
+
 void flatten(const json& value, Values& out) {
   if (value.is_array()) {
     for (const json& element : value) flatten(element, out);
   } else {
-    out.push_back(value.is_boolean() ? static_cast<double>(value.get<bool>()) : value.get<double>());
+    out.push_back(number_of(value));
   }
 }
 
@@ -32,7 +43,7 @@ const json& required(const json& values, const std::string& key) {
 }  // namespace
 
 double Inputs::number(const std::string& key) const {
-  return required(values_, key).get<double>();
+  return number_of(required(values_, key));
 }
 
 int Inputs::integer(const std::string& key) const {
@@ -42,7 +53,7 @@ int Inputs::integer(const std::string& key) const {
 Vector3 Inputs::vector(const std::string& key) const {
   const json& value = required(values_, key);
   if (value.is_number()) return Vector3::Constant(value.get<double>());
-  return {value.at(0).get<double>(), value.at(1).get<double>(), value.at(2).get<double>()};
+  return {number_of(value.at(0)), number_of(value.at(1)), number_of(value.at(2))};
 }
 
 double Inputs::degrees(const std::string& key) const {
@@ -96,6 +107,29 @@ std::string shown(const Values& values) {
   return fmt::format("[{:.6g}]", fmt::join(values, ", "));
 }
 
+// The largest difference of two sets of rows of angles, each row with its nearest that no other has taken.
+double apart(const json& wanted, std::vector<Values> rows) {
+  if (wanted.size() != rows.size()) return HUGE_VAL;
+  double worst = 0.0;
+  for (const json& one : wanted) {
+    Values reference;
+    flatten(one, reference);
+    const auto distance = [&](const Values& row) {
+      double largest = row.size() == reference.size() ? 0.0 : HUGE_VAL;
+      for (std::size_t i = 0; i < reference.size() && i < row.size(); ++i) {
+        const double turn = std::abs(std::remainder(row[i] - reference[i], 2.0 * std::numbers::pi));
+        largest = std::isnan(turn) ? HUGE_VAL : std::max(largest, turn);
+      }
+      return largest;
+    };
+    const auto nearest = std::min_element(
+        rows.begin(), rows.end(), [&](const Values& a, const Values& b) { return distance(a) < distance(b); });
+    worst = std::max(worst, distance(*nearest));
+    rows.erase(nearest);
+  }
+  return worst;
+}
+
 void run_case(const Quantities& quantities, const json& one, Tally& tally) {
   const std::string id = one.at("id"), quantity = one.at("quantity");
   const auto found = quantities.find(quantity);
@@ -113,6 +147,14 @@ void run_case(const Quantities& quantities, const json& one, Tally& tally) {
     if (const auto* name = std::get_if<std::string>(&answer)) {
       got = *name;
       ok = wanted.is_string() && expected == got;
+    } else if (const auto* angles = std::get_if<AngleRows>(&answer)) {
+      got = fmt::format("{} solutions", angles->rows.size());
+      if (wanted.is_array()) {
+        expected = fmt::format("{} solutions", wanted.size());
+        const double worst = apart(wanted, angles->rows);
+        difference = fmt::format("{:.2e}", worst);
+        ok = worst <= tolerance.of(0.0);
+      }
     } else if (const Values& values = std::get<Values>(answer); wanted.is_string()) {
       got = shown(values);
     } else {
@@ -144,9 +186,16 @@ void run_case(const Quantities& quantities, const json& one, Tally& tally) {
              quantity, expected, got, difference, tolerance.shown(), one.value("unit", ""));
 }
 
+// Python's json module writes NaN, which no other reader takes.
+std::string without_nan(std::istream& stream) {
+  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  return std::regex_replace(text, std::regex(R"(([\[,:]\s*)NaN\b)"), "$1null");
+}
+
 int run(const std::vector<std::string>& files) {
   Quantities quantities;
   add_delta(quantities);
+  add_arm(quantities);
   add_actuation(quantities);
   add_r_cube(quantities);
   Tally tally;
@@ -157,7 +206,7 @@ int run(const std::vector<std::string>& files) {
       return 2;
     }
     try {
-      json cases = json::parse(stream);
+      json cases = json::parse(without_nan(stream));
       if (cases.is_object()) cases = cases.at("cases");
       for (const json& one : cases) run_case(quantities, one, tally);
     } catch (const json::exception& problem) {

@@ -43,12 +43,17 @@ class Inputs {
 
 /// An answer in numbers: one, or an array row by row. Yes is 1 and no is 0.
 using Values = std::vector<double>;
-/// Numbers, or a name.
-using Answer = std::variant<Values, std::string>;
+/// Rows of angles [rad] in any order, each angle modulo a turn.
+struct AngleRows {
+  std::vector<Values> rows;
+};
+/// Numbers, a name, or solutions.
+using Answer = std::variant<Values, std::string, AngleRows>;
 using Quantity = std::function<Answer(const Inputs&)>;
 using Quantities = std::map<std::string, Quantity>;
 
 void add_delta(Quantities& quantities);
+void add_arm(Quantities& quantities);
 void add_actuation(Quantities& quantities);
 void add_r_cube(Quantities& quantities);
 

@@ -11,6 +11,7 @@
 
 #include "zwidth/analysis/force.h"
 #include "zwidth/mechanism/batch_delta.h"
+#include "zwidth/mechanism/families.h"
 #include "zwidth/mechanism/jacobian.h"
 #include "zwidth/mechanism/mechanism.h"
 #include "zwidth/mechanism/posture.h"

@@ -6,6 +6,7 @@
 
 #include "zwidth/description/write.h"
 #include "zwidth/mechanism/delta.h"
+#include "zwidth/mechanism/families.h"
 
 namespace zwidth {
 

@@ -5,6 +5,9 @@
 #include <numbers>
 
 #include "zwidth/analysis/internal/probe.h"
+#include "zwidth/description/names.h"
+#include "zwidth/description/units.h"
+#include "zwidth/description/values.h"
 #include "zwidth/mechanism/jacobian.h"
 
 namespace zwidth {
@@ -19,12 +22,37 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 std::vector<std::string> driven_joints(const DriveDescription& drive, const Mechanism& mechanism) {
-  return drive.joints.empty() ? mechanism.active_names() : drive.joints;
+  if (!drive.joints.empty()) return drive.joints;
+  std::vector<std::string> names;
+  for (int i = 0; i < mechanism.active_count(); ++i) {
+    if (!mechanism.is_free(i)) names.push_back(mechanism.active_names()[static_cast<std::size_t>(i)]);
+  }
+  return names;
 }
 
 int joint_index(const Mechanism& mechanism, const std::string& name) {
   const auto& names = mechanism.active_names();
   return static_cast<int>(std::ranges::find(names, name) - names.begin());
+}
+
+// The lengths and angles of a family as its file gives them.
+std::vector<GeometryEntry> geometry_of(const Description& description) {
+  std::vector<GeometryEntry> entries;
+  for (const DescribedValue& value : described_values(description)) {
+    const bool of_row = value.table.starts_with("joint[");
+    if (value.table != "mechanism" && !of_row) continue;
+    if (of_row && value.values.size() == 1 && value.values.front() == 0.0) continue;
+    std::string key = of_row ? value.table + "." + value.key : value.key, name = key;
+    std::ranges::replace(name, '_', ' ');
+    const std::string unit(si_unit(value.dimension));
+    if (value.values.size() == 2) {
+      entries.push_back({key + "_min", name + " from", "", value.values[0], unit});
+      entries.push_back({key + "_max", name + " to", "", value.values[1], unit});
+    } else {
+      entries.push_back({key, name, "", value.values.front(), unit});
+    }
+  }
+  return entries;
 }
 
 std::vector<GeometryEntry> geometry_of(const DeltaDescription& delta) {
@@ -220,12 +248,18 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
   sheet.name = description.name;
   sheet.title = description.title;
   sheet.source = description.source;
-  sheet.mechanism_type = std::holds_alternative<DeltaDescription>(description.mechanism) ? "delta" : "legs";
+  sheet.mechanism_type = family_name(description.mechanism);
   sheet.active_joints = mechanism.active_count();
   sheet.tool_freedoms = mechanism.tool_rows();
   sheet.joint_names = mechanism.active_names();
   for (int j = 0; j < mechanism.active_count(); ++j) sheet.joint_ranges.push_back(mechanism.active_range(j));
-  sheet.geometry = std::visit([](const auto& given) { return geometry_of(given); }, description.mechanism);
+  if (const auto* delta = std::get_if<DeltaDescription>(&description.mechanism)) {
+    sheet.geometry = geometry_of(*delta);
+  } else if (const auto* legs = std::get_if<LegsDescription>(&description.mechanism)) {
+    sheet.geometry = geometry_of(*legs);
+  } else {
+    sheet.geometry = geometry_of(description);
+  }
   for (const BodyModel& body : mechanism.bodies()) sheet.moving_mass += body.mass;
 
   sheet.joint_resolution = sheet.torque_resolution = ActiveVector::Zero(mechanism.active_count());

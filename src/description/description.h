@@ -36,6 +36,71 @@ struct DeltaDescription {
   bool operator==(const DeltaDescription&) const = default;
 };
 
+/// A planar five-bar: two cranks on fixed motors, two couplers that meet in the tool (Singh, Saha, Manivannan).
+/// Base frame: origin between the motors, x from the left motor to the right one, the tool in the plane z = 0.
+/// Legs "left" (joints theta1, elbow1) and "right" (theta2, elbow2).
+struct FiveBarDescription {
+  double crank = 0.0;      ///< r1, of each side [m]
+  double coupler = 0.0;    ///< r2, of each side [m]
+  double half_base = 0.0;  ///< r3, half the distance of the motors [m]
+  Interval left_range;     ///< of theta1, from +x [rad]
+  Interval right_range;    ///< of theta2, from +x [rad]
+  int left_mode = 1;    ///< s1, +1 or -1: the left leg's root; +1 turns the crank on from the line to the tool
+  int right_mode = -1;  ///< s2, of the right leg
+  int assembly_mode = 1;  ///< +1: the tool lies to the left of the line from the left elbow to the right one
+  std::string source;
+  Sources sources = {};
+
+  bool operator==(const FiveBarDescription&) const = default;
+};
+
+/// The R-CUBE: three equal legs, each a driven link, a universal joint, and two links on parallel revolutes,
+/// carry a platform that only translates; motor i moves the tool along axis i (Görgülü 2018).
+/// Base frame: motor i at S e_i, its axis along e_(i+1), its driven link along e_(i+2) at angle zero.
+/// Legs leg1, leg2, leg3; in each the joints theta (driven), tilt, swing, elbow, wrist, numbered as the leg.
+struct RCubeDescription {
+  double drive_link = 0.0;   ///< l1 [m]
+  double inner_link = 0.0;   ///< l2 [m]
+  double outer_link = 0.0;   ///< l3 [m]
+  double base_offset = 0.0;  ///< S, of each motor axis from the base origin [m]
+  Interval joint_range;      ///< of every driven joint [rad]
+  int elbow_mode = -1;       ///< sigma, +1 or -1: sign of sin of every leg's elbow angle
+  std::string source;
+  Sources sources = {};
+
+  bool operator==(const RCubeDescription&) const = default;
+};
+
+enum class SerialJointType {
+  revolute,   ///< its value adds to theta
+  prismatic,  ///< its value adds to d
+  fixed,      ///< a row of the table without a joint
+};
+
+/// One row of a Denavit-Hartenberg table, Rz(theta) Tz(d) Tx(a) Rx(alpha).
+struct SerialJointDescription {
+  std::string name;
+  SerialJointType type = SerialJointType::revolute;
+  double theta = 0.0;         ///< about z; of a revolute joint at value zero [rad]
+  double d = 0.0;             ///< along z; of a prismatic joint at value zero [m]
+  double a = 0.0;             ///< along x [m]
+  double alpha = 0.0;         ///< about x [rad]
+  Interval range{-1e9, 1e9};  ///< [rad] or [m]
+  double home = 0.0;          ///< value in the home posture [rad] or [m]
+  bool free = false;          ///< moved by the hand, not by a drive
+
+  bool operator==(const SerialJointDescription&) const = default;
+};
+
+/// A serial arm. Its one leg is called "arm"; the tool frame is that of the last row.
+struct SerialDescription {
+  std::vector<SerialJointDescription> joints;  ///< rows from the base to the tool
+  std::string source;
+  Sources sources = {};
+
+  bool operator==(const SerialDescription&) const = default;
+};
+
 enum class JointType {
   revolute,       ///< turns the following links about the axis
   prismatic,      ///< slides the following links along the axis
@@ -47,7 +112,9 @@ enum class JointType {
 struct JointDescription {
   std::string name;
   JointType type = JointType::revolute;
-  bool active = false;
+  bool active = false;  ///< independent: its value is given, and decides the posture with those of the other
+                        ///< active joints
+  bool free = false;    ///< of an active joint: the hand moves it, no drive does
   Vector3 axis = Vector3::UnitZ();  ///< unit vector
   Vector3 point = Vector3::Zero();  ///< a point on the axis; for a parallelogram, the root end of its bars [m]
   Interval range{-1e9, 1e9};        ///< [rad] or [m]; passive joints may leave it out
@@ -70,6 +137,8 @@ struct LegDescription {
       Vector3::Zero();  ///< the point of the last link that meets the platform, leg's zero posture [m]
   Attachment attachment = Attachment::rigid;
   Vector3 platform_point = Vector3::Zero();  ///< the same point, in the platform frame [m]
+  /// Of the platform at the leg's zero posture: columns are its axes. Rigid attachments only.
+  Matrix3 platform_rotation = Matrix3::Identity();
 
   bool operator==(const LegDescription&) const = default;
 };
@@ -78,6 +147,9 @@ struct LegDescription {
 enum class PlatformFreedom {
   translation,  ///< its axes stay parallel to the base frame's (held so by parallelograms or equal joints)
   rigid,        ///< all six degrees of freedom, less what the legs forbid
+  planar_translation,  ///< x and y: the tool is a point of a plane, its orientation means nothing
+  planar,              ///< x, y, and turning about z
+  rotation,            ///< turning about a fixed point
 };
 
 /// Any mechanism: legs from the base to one platform, whose frame carries the tool at its origin.
@@ -90,7 +162,8 @@ struct LegsDescription {
   bool operator==(const LegsDescription&) const = default;
 };
 
-using MechanismDescription = std::variant<DeltaDescription, LegsDescription>;
+using MechanismDescription =
+    std::variant<DeltaDescription, FiveBarDescription, RCubeDescription, SerialDescription, LegsDescription>;
 
 /// A rigid body fixed to a link or to the platform.
 ///

@@ -30,6 +30,7 @@ JointDescription read_joint(TableReader& table) {
   }
   const Dimension dimension = joint.type == JointType::prismatic ? Dimension::length : Dimension::angle;
   joint.active = table.flag("active", Need::optional).value_or(false);
+  joint.free = table.flag("free", Need::optional).value_or(false);
   const std::string_view axis_advice = "give the direction of the axis at the zero posture, such as [0, 0, 1]";
   if (const auto axis = table.vector("axis", Dimension::number, Need::required, axis_advice)) {
     joint.axis = direction(*axis);
@@ -58,24 +59,63 @@ LegDescription read_leg(TableReader& table) {
   if (const auto point = table.vector("platform_point", Dimension::length, Need::optional, point_advice)) {
     leg.platform_point = *point;
   }
+  const std::string_view rows_advice =
+      "give three rows, whose columns are the platform's axes at the leg's zero posture";
+  if (const auto R = table.matrix("platform_rotation", Dimension::number, Need::optional, rows_advice)) {
+    leg.platform_rotation = *R;
+  }
   for (TableReader& joint : table.tables("joint")) leg.joints.push_back(read_joint(joint));
   table.finish();
   return leg;
 }
 
-DeltaDescription read_delta(TableReader& table) {
-  DeltaDescription delta;
-  table.read(delta);
-  table.read_sources(delta.source, delta.sources, Need::optional);
+// A family whose [mechanism] table holds plain quantities only.
+template <class Family>
+Family read_family(TableReader& table) {
+  Family family;
+  table.read(family);
+  table.read_sources(family.source, family.sources, Need::optional);
   table.finish();
-  return delta;
+  return family;
+}
+
+SerialJointDescription read_serial_joint(TableReader& table) {
+  SerialJointDescription joint;
+  joint.name = table.text("name", Need::required, "name the joint").value_or("");
+  if (const auto type = table.choice<SerialJointType>("type",
+                                                      {{"revolute", SerialJointType::revolute},
+                                                       {"prismatic", SerialJointType::prismatic},
+                                                       {"fixed", SerialJointType::fixed}},
+                                                      Need::required)) {
+    joint.type = *type;
+  }
+  table.read(joint);
+  if (joint.type != SerialJointType::fixed) {
+    const Dimension dimension = joint.type == SerialJointType::prismatic ? Dimension::length : Dimension::angle;
+    if (const auto range =
+            table.interval("range", dimension, Need::required, "give the lowest and the highest value")) {
+      joint.range = *range;
+    }
+    joint.home = table.quantity("home", dimension, Need::optional)
+                     .value_or(joint.range.contains(0.0) ? 0.0 : joint.range.middle());
+    joint.free = table.flag("free", Need::optional).value_or(false);
+  }
+  table.finish();
+  return joint;
+}
+
+SerialDescription read_serial(TableReader& table, TableReader& device) {
+  SerialDescription arm;
+  table.read_sources(arm.source, arm.sources, Need::optional);
+  table.finish();
+  for (TableReader& joint : device.tables("joint")) arm.joints.push_back(read_serial_joint(joint));
+  return arm;
 }
 
 LegsDescription read_legs(TableReader& table, TableReader& device) {
   LegsDescription legs;
-  if (const auto platform = table.choice<PlatformFreedom>(
-          "platform", {{"translation", PlatformFreedom::translation}, {"rigid", PlatformFreedom::rigid}},
-          Need::required)) {
+  if (const auto platform =
+          table.choice<PlatformFreedom>("platform", platform_freedom_names(), Need::required)) {
     legs.platform = *platform;
   }
   table.read_sources(legs.source, legs.sources, Need::optional);
@@ -84,25 +124,35 @@ LegsDescription read_legs(TableReader& table, TableReader& device) {
   return legs;
 }
 
-enum class MechanismType { delta, legs };
+enum class MechanismType { delta, five_bar, r_cube, serial, legs };
+
+std::optional<MechanismType> read_mechanism_type(TableReader& table) {
+  return table.choice<MechanismType>("type",
+                                     {{"delta", MechanismType::delta},
+                                      {"five-bar", MechanismType::five_bar},
+                                      {"r-cube", MechanismType::r_cube},
+                                      {"serial", MechanismType::serial},
+                                      {"legs", MechanismType::legs}},
+                                     Need::required);
+}
 
 MechanismDescription read_mechanism(TableReader& device) {
-  const std::string_view advice = "start one with [mechanism] and type = \"delta\" or \"legs\"";
+  const std::string_view advice = "start one with [mechanism] and type = \"delta\", \"legs\", ...";
   std::optional<TableReader> table = device.table("mechanism", Need::required, advice);
-  if (!table) {
-    device.has("leg");
-    return {};
-  }
-  const auto type = table->choice<MechanismType>(
-      "type", {{"delta", MechanismType::delta}, {"legs", MechanismType::legs}}, Need::required);
-  if (!type) {
-    device.has("leg");
-    return {};
-  }
-  if (*type == MechanismType::legs) return read_legs(*table, device);
-  if (device.has("leg"))
+  const bool has_legs = device.has("leg"), has_joints = device.has("joint");
+  if (!table) return {};
+  const auto chosen = read_mechanism_type(*table);
+  if (!chosen) return {};
+  const MechanismType type = chosen.value_or(MechanismType::legs);
+  if (has_legs && type != MechanismType::legs)
     device.report("leg", "belongs to type = \"legs\"", "leave it out, or change mechanism.type");
-  return read_delta(*table);
+  if (has_joints && type != MechanismType::serial)
+    device.report("joint", "belongs to type = \"serial\"", "leave it out, or change mechanism.type");
+  if (type == MechanismType::delta) return read_family<DeltaDescription>(*table);
+  if (type == MechanismType::five_bar) return read_family<FiveBarDescription>(*table);
+  if (type == MechanismType::r_cube) return read_family<RCubeDescription>(*table);
+  if (type == MechanismType::serial) return read_serial(*table, device);
+  return read_legs(*table, device);
 }
 
 // --------------------------------------------------------------------------------------------------- bodies
@@ -176,15 +226,10 @@ std::optional<DriveOutputDescription> read_output(TableReader& drive) {
 // The range of the first joint that the drive moves, if there is one.
 std::optional<Interval> range_of_driven_joint(const MechanismDescription& mechanism,
                                               const DriveDescription& drive) {
-  if (const auto* delta = std::get_if<DeltaDescription>(&mechanism)) return delta->joint_range;
   const std::vector<int> driven = driven_joints(mechanism, drive);
-  int index = 0;
-  for (const LegDescription& leg : std::get<LegsDescription>(mechanism).legs) {
-    for (const JointDescription& joint : leg.joints) {
-      if (joint.active && !driven.empty() && index++ == driven.front()) return joint.range;
-    }
-  }
-  return std::nullopt;
+  const std::vector<Interval> ranges = active_joint_ranges(mechanism);
+  if (driven.empty() || driven.front() < 0) return std::nullopt;
+  return ranges[static_cast<std::size_t>(driven.front())];
 }
 
 DriveDescription read_drive(TableReader& table, const Catalogue& catalogue,

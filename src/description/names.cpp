@@ -1,8 +1,8 @@
 #include "zwidth/description/names.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
-#include <numeric>
 
 namespace zwidth {
 namespace {
@@ -11,26 +11,66 @@ struct NamedJoint {
   std::string leg;
   std::string joint;
   bool active = false;
+  Interval range = {};  // of an active joint
+  bool free = false;
 };
 
-std::vector<NamedJoint> joints_of(const MechanismDescription& mechanism) {
-  std::vector<NamedJoint> joints;
-  if (const auto* legs = std::get_if<LegsDescription>(&mechanism)) {
-    for (const LegDescription& leg : legs->legs) {
-      for (const JointDescription& joint : leg.joints) joints.push_back({leg.name, joint.name, joint.active});
-    }
-    return joints;
-  }
+// Three equal legs whose first joint is the driven one.
+std::vector<NamedJoint> three_legs(const std::vector<std::string>& joints, const Interval& range) {
+  std::vector<NamedJoint> all;
   for (const char* number : {"1", "2", "3"}) {
-    for (const char* joint : {"theta", "elbow", "swing"}) {
-      joints.push_back(
-          {std::string("leg") + number, std::string(joint) + number, joint == std::string("theta")});
+    for (const std::string& joint : joints) {
+      all.push_back({std::string("leg") + number, joint + number, joint == joints.front(), range});
+    }
+  }
+  return all;
+}
+
+std::vector<NamedJoint> joints_of(const DeltaDescription& delta) {
+  return three_legs({"theta", "elbow", "swing"}, delta.joint_range);
+}
+
+std::vector<NamedJoint> joints_of(const FiveBarDescription& five_bar) {
+  return {{"left", "theta1", true, five_bar.left_range},
+          {"left", "elbow1"},
+          {"right", "theta2", true, five_bar.right_range},
+          {"right", "elbow2"}};
+}
+
+std::vector<NamedJoint> joints_of(const RCubeDescription& r_cube) {
+  return three_legs({"theta", "tilt", "swing", "elbow", "wrist"}, r_cube.joint_range);
+}
+
+std::vector<NamedJoint> joints_of(const SerialDescription& arm) {
+  std::vector<NamedJoint> joints;
+  for (const SerialJointDescription& joint : arm.joints) {
+    if (joint.type != SerialJointType::fixed)
+      joints.push_back({"arm", joint.name, true, joint.range, joint.free});
+  }
+  return joints;
+}
+
+std::vector<NamedJoint> joints_of(const LegsDescription& legs) {
+  std::vector<NamedJoint> joints;
+  for (const LegDescription& leg : legs.legs) {
+    for (const JointDescription& joint : leg.joints) {
+      joints.push_back({leg.name, joint.name, joint.active, joint.range, joint.free});
     }
   }
   return joints;
 }
 
+std::vector<NamedJoint> joints_of(const MechanismDescription& mechanism) {
+  return std::visit([](const auto& family) { return joints_of(family); }, mechanism);
+}
+
 }  // namespace
+
+std::string family_name(const MechanismDescription& mechanism) {
+  constexpr std::array<const char*, 5> names = {"delta", "five-bar", "r-cube", "serial", "legs"};
+  static_assert(std::variant_size_v<MechanismDescription> == names.size());
+  return names[mechanism.index()];
+}
 
 std::vector<std::string> active_joint_names(const MechanismDescription& mechanism) {
   const std::vector<NamedJoint> joints = joints_of(mechanism);
@@ -43,11 +83,37 @@ std::vector<std::string> active_joint_names(const MechanismDescription& mechanis
   return names;
 }
 
+std::vector<Interval> active_joint_ranges(const MechanismDescription& mechanism) {
+  std::vector<Interval> ranges;
+  for (const NamedJoint& joint : joints_of(mechanism)) {
+    if (joint.active) ranges.push_back(joint.range);
+  }
+  return ranges;
+}
+
+const std::vector<std::pair<std::string, PlatformFreedom>>& platform_freedom_names() {
+  static const std::vector<std::pair<std::string, PlatformFreedom>> names = {
+      {"translation", PlatformFreedom::translation},
+      {"rigid", PlatformFreedom::rigid},
+      {"planar-translation", PlatformFreedom::planar_translation},
+      {"planar", PlatformFreedom::planar},
+      {"rotation", PlatformFreedom::rotation}};
+  return names;
+}
+
 std::vector<std::string> link_names(const MechanismDescription& mechanism) {
   std::vector<std::string> names{"platform"};
   if (std::holds_alternative<DeltaDescription>(mechanism)) names.insert(names.end(), {"upper_arm", "forearm"});
   for (const NamedJoint& joint : joints_of(mechanism)) names.push_back(joint.leg + "/" + joint.joint);
   return names;
+}
+
+bool is_free_joint(const MechanismDescription& mechanism, int active) {
+  int index = 0;
+  for (const NamedJoint& joint : joints_of(mechanism)) {
+    if (joint.active && index++ == active) return joint.free;
+  }
+  return false;
 }
 
 int active_joint_index(const MechanismDescription& mechanism, const std::string& name) {
@@ -64,8 +130,11 @@ int active_joint_index(const MechanismDescription& mechanism, const std::string&
 std::vector<int> driven_joints(const MechanismDescription& mechanism, const DriveDescription& drive) {
   std::vector<int> indices;
   if (drive.joints.empty()) {
-    indices.resize(active_joint_names(mechanism).size());
-    std::iota(indices.begin(), indices.end(), 0);
+    int index = 0;
+    for (const NamedJoint& joint : joints_of(mechanism)) {
+      if (joint.active && !joint.free) indices.push_back(index);
+      if (joint.active) ++index;
+    }
     return indices;
   }
   for (const std::string& name : drive.joints) indices.push_back(active_joint_index(mechanism, name));

@@ -7,13 +7,23 @@
 
 /// The names that a mechanism gives to its joints and links, for drives and bodies to refer to.
 ///
-/// A delta has legs leg1, leg2, leg3 with joints theta1 (driven), elbow1, swing1, and so on.
+/// Those of the closed-form families stand at their structs in description.h; a delta has legs leg1, leg2, leg3
+/// with joints theta1 (driven), elbow1, swing1, and so on.
 
 namespace zwidth {
+
+/// "delta", "five-bar", "r-cube", "serial" or "legs": the family as files call it.
+std::string family_name(const MechanismDescription& mechanism);
 
 /// Names of the active joints, leg after leg, from the base outwards: "JOINT" where no other joint of the
 /// mechanism has that name, else "LEG/JOINT".
 std::vector<std::string> active_joint_names(const MechanismDescription& mechanism);
+
+/// Ranges of the active joints, in the order of their names [rad] or [m].
+std::vector<Interval> active_joint_ranges(const MechanismDescription& mechanism);
+
+/// "translation", "rigid", ...: every platform freedom as files call it.
+const std::vector<std::pair<std::string, PlatformFreedom>>& platform_freedom_names();
 
 /// Every name that `BodyDescription::on` may have.
 std::vector<std::string> link_names(const MechanismDescription& mechanism);
@@ -21,7 +31,10 @@ std::vector<std::string> link_names(const MechanismDescription& mechanism);
 /// Index in `active_joint_names` of the joint called "JOINT" (if unique) or "LEG/JOINT"; -1 if there is none.
 int active_joint_index(const MechanismDescription& mechanism, const std::string& name);
 
-/// Indices in `active_joint_names` of the joints that a drive moves: all of them if it names none.
+/// Whether an active joint is moved by the hand alone.
+bool is_free_joint(const MechanismDescription& mechanism, int active);
+
+/// Indices in `active_joint_names` of the joints that a drive moves: all but the free ones if it names none.
 /// REQUIRES: the drive names active joints only, as `validate` sees to.
 std::vector<int> driven_joints(const MechanismDescription& mechanism, const DriveDescription& drive);
 

@@ -87,6 +87,26 @@ KeyReference part_key(const char* kind, const char* example) {
 
 }  // namespace
 
+namespace {
+
+TableReference serial_joint_table() {
+  TableReference joint{.name = "serial-joint",
+                       .keys = {{"name", "string", "required", "differs from joint to joint, has no '/'",
+                                 "what drives and bodies refer to", "\"theta1\""},
+                                {"type", "\"revolute\", \"prismatic\" or \"fixed\"", "required", "",
+                                 "its value adds to theta, adds to d, or there is none", "\"revolute\""}}};
+  for (KeyReference& key : references_of<SerialJointDescription>()) joint.keys.push_back(std::move(key));
+  joint.keys.push_back({"range", "[lowest, highest] angle [rad] or length [m]", "required",
+                        "smaller to larger; not of a fixed row", "how far the joint goes",
+                        "[\"-90 deg\", \"90 deg\"]"});
+  joint.keys.push_back({"home", "angle [rad] or length [m]", "0, or the middle of the range",
+                        "must be in the range", "value in the home posture", "\"45 deg\""});
+  joint.keys.push_back({"free", "true or false", "false", "has no drive", "whether the hand moves it", "true"});
+  return joint;
+}
+
+}  // namespace
+
 std::vector<TableReference> file_reference() {
   return {
       table<void>("device",
@@ -100,9 +120,18 @@ std::vector<TableReference> file_reference() {
                     "[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]"}}),
       table<DeltaDescription>("delta",
                               {{"type", "string", "required", "", "the kind of mechanism", "\"delta\""}}),
+      table<FiveBarDescription>("five-bar",
+                                {{"type", "string", "required", "", "the kind of mechanism", "\"five-bar\""}}),
+      table<RCubeDescription>("r-cube",
+                              {{"type", "string", "required", "", "the kind of mechanism", "\"r-cube\""}}),
+      table<void>("serial", {{"type", "string", "required", "", "the kind of mechanism", "\"serial\""}}),
+      serial_joint_table(),
       table<void>("legs", {{"type", "string", "required", "", "the kind of mechanism", "\"legs\""},
-                           {"platform", "\"translation\" or \"rigid\"", "required", "",
-                            "what the platform may do: keep its axes parallel to the base's, or move freely",
+                           {"platform",
+                            "\"translation\", \"rigid\", \"planar-translation\", \"planar\" or \"rotation\"",
+                            "required", "",
+                            "what the platform may do: keep its axes parallel to the base's, move freely, move "
+                            "as a point in x and y, move in x and y and turn about z, or turn about a point",
                             "\"translation\""}}),
       {.name = "leg",
        .keys = {{"name", "string", "required", "differs from leg to leg, has no '/'",
@@ -113,7 +142,10 @@ std::vector<TableReference> file_reference() {
                 {"attachment", "\"rigid\" or \"spherical\"", "required", "",
                  "whether the platform is the last link, or hangs on it in one point", "\"spherical\""},
                 {"platform_point", "[x, y, z] length [m]", "[0, 0, 0]", "must be finite",
-                 "the same point in the platform frame, whose origin is the tool", "[0, \"55 mm\", 0]"}}},
+                 "the same point in the platform frame, whose origin is the tool", "[0, \"55 mm\", 0]"},
+                {"platform_rotation", "three rows of three numbers", "identity", "must be a rotation, to 1e-6",
+                 "columns: the platform's axes at the leg's zero posture; for rigid attachments",
+                 "[[0, 0, 1], [-1, 0, 0], [0, -1, 0]]"}}},
       {.name = "joint",
        .keys = {{"name", "string", "required", "differs from joint to joint of a leg, has no '/'",
                  "what drives and bodies refer to", "\"theta1\""},
@@ -121,7 +153,9 @@ std::vector<TableReference> file_reference() {
                  "turns the following links, slides them, or swings them on parallel bars without turning them",
                  "\"revolute\""},
                 {"active", "true or false", "false", "at least one joint, at most 8",
-                 "whether a drive may move it", "true"},
+                 "whether it is independent: moved by a drive, or by the hand", "true"},
+                {"free", "true or false", "false", "only of an active joint, which then has no drive",
+                 "whether the hand moves it", "true"},
                 {"axis", "[x, y, z] number", "required", "must not be zero",
                  "direction of the axis at the leg's zero posture, of any length", "[1, 0, 0]"},
                 {"point", "[x, y, z] length [m]", "required", "must be finite",

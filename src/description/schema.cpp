@@ -21,6 +21,9 @@ constexpr Bounds kSmallLength{.min = 0.0, .max = 1.0, .above_min = true};
 constexpr Bounds kAtLeastOne{.min = 1.0};
 constexpr Bounds kShare{.min = 0.0, .max = 1.0, .above_min = true};
 constexpr Bounds kWithinHalfTurn{.min = -kHalfTurn, .max = kHalfTurn};
+constexpr Bounds kWithinTurn{.min = -2.0 * kHalfTurn, .max = 2.0 * kHalfTurn};
+constexpr Bounds kOffset{.min = -10.0, .max = 10.0};  // [m]
+constexpr Bounds kSign{.min = -1.0, .max = 1.0};      // 0 is refused by `validate`
 constexpr Bounds kUpToTurn{.min = 0.0, .max = 2.0 * kHalfTurn};
 constexpr Bounds kPoisson{.min = -1.0, .max = 0.5, .above_min = true};
 
@@ -192,6 +195,65 @@ std::span<const Field<DeltaDescription>> fields<DeltaDescription>() {
       {"joint_range", &Delta::joint_range, angle, kWithinHalfTurn, required,
        "lowest and highest angle of every driven joint; 0 is horizontal, positive lifts the elbow",
        "[\"-36 deg\", \"84 deg\"]"},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<FiveBarDescription>> fields<FiveBarDescription>() {
+  using FiveBar = FiveBarDescription;
+  static const Field<FiveBar> list[] = {
+      {"crank", &FiveBar::crank, length, kLinkLength, required, "length of each driven link", "\"100 mm\""},
+      {"coupler", &FiveBar::coupler, length, kLinkLength, required, "length of each link that holds the tool",
+       "\"150 mm\""},
+      {"half_base", &FiveBar::half_base, length, kRadius, required, "half the distance of the motors",
+       "\"30 mm\""},
+      {"left_range", &FiveBar::left_range, angle, kWithinTurn, required,
+       "lowest and highest angle of the left crank, from +x", "[\"60 deg\", \"200 deg\"]"},
+      {"right_range", &FiveBar::right_range, angle, kWithinTurn, required,
+       "lowest and highest angle of the right crank, from +x", "[\"-20 deg\", \"120 deg\"]"},
+      {"left_mode", &FiveBar::left_mode, number, kSign, optional,
+       "working mode of the left leg, 1 or -1: on which side of the line from motor to tool its elbow is; 1 is "
+       "anticlockwise",
+       "1"},
+      {"right_mode", &FiveBar::right_mode, number, kSign, optional, "working mode of the right leg, 1 or -1",
+       "-1"},
+      {"assembly_mode", &FiveBar::assembly_mode, number, kSign, optional,
+       "1 or -1: the tool lies to the left or right of the line from the left elbow to the right one", "1"},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<RCubeDescription>> fields<RCubeDescription>() {
+  using RCube = RCubeDescription;
+  static const Field<RCube> list[] = {
+      {"drive_link", &RCube::drive_link, length, kLinkLength, required, "length of the driven link",
+       "\"106 mm\""},
+      {"inner_link", &RCube::inner_link, length, kLinkLength, required,
+       "length of the link after the universal joint", "\"200 mm\""},
+      {"outer_link", &RCube::outer_link, length, kLinkLength, required,
+       "length of the link that holds the platform", "\"200 mm\""},
+      {"base_offset", &RCube::base_offset, length, kRadius, required,
+       "distance of each motor axis from the base origin", "\"106 mm\""},
+      {"joint_range", &RCube::joint_range, angle, kWithinHalfTurn, required,
+       "lowest and highest angle of every driven joint", "[\"-34 deg\", \"34 deg\"]"},
+      {"elbow_mode", &RCube::elbow_mode, number, kSign, optional,
+       "1 or -1: the sign of the sine of every elbow angle", "-1"},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<SerialJointDescription>> fields<SerialJointDescription>() {
+  using Joint = SerialJointDescription;
+  static const Field<Joint> list[] = {
+      {"theta", &Joint::theta, angle, kWithinTurn, optional, "turn about z; of a revolute joint at value 0",
+       "\"90 deg\""},
+      {"d", &Joint::d, length, kOffset, optional, "shift along z; of a prismatic joint at value 0",
+       "\"250 mm\""},
+      {"a", &Joint::a, length, kOffset, optional, "shift along x", "\"95 mm\""},
+      {"alpha", &Joint::alpha, angle, kWithinTurn, optional, "turn about x", "\"-90 deg\""},
   };
   return list;
 }

@@ -23,8 +23,7 @@ class Validator {
 
   std::vector<Problem> values() {
     device();
-    if (const auto* delta = std::get_if<DeltaDescription>(&d_.mechanism)) check(*delta);
-    if (const auto* legs = std::get_if<LegsDescription>(&d_.mechanism)) check(*legs);
+    std::visit([this](const auto& family) { check(family); }, d_.mechanism);
     for (std::size_t i = 0; i < d_.bodies.size(); ++i) check(d_.bodies[i], join_path("body", i));
     for (std::size_t i = 0; i < d_.drives.size(); ++i) check(d_.drives[i], join_path("drive", i));
     return std::move(problems_);
@@ -45,9 +44,12 @@ class Validator {
       const std::string key = join_path("drive", i) + ".joints";
       for (const std::string& joint : drive.joints.empty() ? active : drive.joints) {
         const int index = active_joint_index(d_.mechanism, joint);
+        const bool is_free = index >= 0 && is_free_joint(d_.mechanism, index);
         if (index < 0) {
           wrong(key, quoted(joint), "is no active joint of this mechanism", suggest(joint, active));
-        } else if (driven[index]) {
+        } else if (is_free && !drive.joints.empty()) {
+          wrong(key, quoted(joint), "is free: the hand moves it", "leave it out, or take free from the joint");
+        } else if (!is_free && driven[index]) {
           wrong(key, quoted(joint), "has another drive already", "give each joint to one drive");
         } else {
           driven[index] = true;
@@ -82,17 +84,69 @@ class Validator {
   void device() {
     if (d_.name.empty()) wrong("device.name", "", "must not be empty", "give the device a short name");
     finite(d_.gravity, "device.gravity");
-    if (!finite(d_.to_user, "device.to_user")) return;
+    rotation(d_.to_user, "device.to_user",
+             "give three unit rows at right angles: the user's x, y and z axes in base coordinates");
+  }
+
+  void rotation(const Matrix3& R, const std::string& key, const std::string& advice) {
+    if (!finite(R, key)) return;
     constexpr double kRounding = 1e-6;  // a matrix typed with seven digits
-    const Matrix3& R = d_.to_user;
     const double error = (R * R.transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff();
     if (error > kRounding) {
-      wrong("device.to_user", "",
-            fmt::format("must be a rotation; its rows are {:.2g} away from orthonormal", error),
-            "give three unit rows at right angles: the user's x, y and z axes in base coordinates");
+      wrong(key, "", fmt::format("must be a rotation; its rows are {:.2g} away from orthonormal", error),
+            advice);
     } else if (R.determinant() < 0.0) {
-      wrong("device.to_user", "", "must be a rotation, but mirrors", "turn one of its rows round");
+      wrong(key, "", "must be a rotation, but mirrors", "turn one of its rows round");
     }
+  }
+
+  void sign(int value, const std::string& key) {
+    if (value != 1 && value != -1) {
+      wrong(key, fmt::format("{}", value), "must be 1 or -1", "choose one of the two solutions");
+    }
+  }
+
+  void check(const FiveBarDescription& five_bar) {
+    check_fields(five_bar, "mechanism");
+    sign(five_bar.left_mode, "mechanism.left_mode");
+    sign(five_bar.right_mode, "mechanism.right_mode");
+    sign(five_bar.assembly_mode, "mechanism.assembly_mode");
+  }
+
+  void check(const RCubeDescription& r_cube) {
+    check_fields(r_cube, "mechanism");
+    sign(r_cube.elbow_mode, "mechanism.elbow_mode");
+  }
+
+  void check(const SerialDescription& arm) {
+    if (arm.joints.empty())
+      wrong("joint", "", "is missing", "describe each row of the Denavit-Hartenberg table with [[joint]]");
+    std::set<std::string> names;
+    int moving = 0;
+    for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+      const SerialJointDescription& joint = arm.joints[i];
+      const std::string key = join_path("joint", i);
+      name(joint.name, names, key + ".name", "joint");
+      check_fields(joint, key);
+      if (joint.type == SerialJointType::fixed) continue;
+      ++moving;
+      const Dimension dimension =
+          joint.type == SerialJointType::prismatic ? Dimension::length : Dimension::angle;
+      range_and_home(joint.range, joint.home, dimension, key);
+    }
+    if (!arm.joints.empty() && moving == 0)
+      wrong("joint", "", "has no joint that moves", "make one revolute or prismatic");
+    if (moving > kMaxLegJoints) {
+      wrong("joint", fmt::format("{} joints", moving), fmt::format("must be at most {}", kMaxLegJoints), "");
+    }
+  }
+
+  void range_and_home(const Interval& range, double home, Dimension dimension, const std::string& path) {
+    const std::size_t before = problems_.size();
+    check_interval(range, dimension, {}, path + ".range", "give the lowest and the highest value", problems_);
+    if (problems_.size() > before) return;
+    check_number(home, dimension, {.min = range.min, .max = range.max}, path + ".home",
+                 "start within the range, near a posture that closes the loops", problems_);
   }
 
   void check(const DeltaDescription& delta) {
@@ -165,6 +219,8 @@ class Validator {
   void check(const LegDescription& leg, const std::string& path) {
     finite(leg.tip, path + ".tip");
     finite(leg.platform_point, path + ".platform_point");
+    rotation(leg.platform_rotation, path + ".platform_rotation",
+             "give three unit rows at right angles, whose columns are the platform's axes");
     const int count = static_cast<int>(leg.joints.size());
     if (count == 0) wrong(path + ".joint", "", "is missing", "describe each joint with [[leg.joint]]");
     if (count > kMaxLegJoints) {
@@ -198,16 +254,14 @@ class Validator {
       wrong(path + ".point", "", "is where the next joint is, so that the parallelogram has no bars",
             "give the root end of its bars");
     }
-    const std::size_t before = problems_.size();
-    check_interval(joint.range, dimension, {}, path + ".range", "give the lowest and the highest value",
-                   problems_);
+    range_and_home(joint.range, joint.home, dimension, path);
     const bool bounded = joint.range.min > -kUnbounded && joint.range.max < kUnbounded;
     if (joint.active && !bounded) {
       wrong(path + ".range", "", "is missing", "an active joint needs its lowest and its highest value");
     }
-    if (problems_.size() > before) return;
-    check_number(joint.home, dimension, {.min = joint.range.min, .max = joint.range.max}, path + ".home",
-                 "start within the range, near a posture that closes the loops", problems_);
+    if (joint.free && !joint.active) {
+      wrong(path + ".free", "true", "belongs to an active joint", "set active = true, or leave it out");
+    }
   }
 
   // Necessary for closing: two legs, each stretched out, span the distance between their roots.

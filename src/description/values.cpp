@@ -34,6 +34,19 @@ class Collector {
     }
   }
 
+  void add_serial_joint(const std::string& table, const SerialJointDescription& joint,
+                        const SerialDescription& arm) {
+    for (const Field<SerialJointDescription>& field : fields<SerialJointDescription>()) {
+      const double value = joint.*std::get<double SerialJointDescription::*>(field.member);
+      add(table, std::string(field.key), {value}, field.dimension, std::string(field.meaning), arm.source,
+          arm.sources);
+    }
+    if (joint.type == SerialJointType::fixed) return;
+    add(table, "range", {joint.range.min, joint.range.max},
+        joint.type == SerialJointType::prismatic ? Dimension::length : Dimension::angle,
+        "lowest and highest value of " + joint.name, arm.source, arm.sources);
+  }
+
   void add(const std::string& table, const std::string& key, std::vector<double> values, Dimension dimension,
            const std::string& meaning, const std::string& source, const Sources& own) {
     const auto found = own.find(key);
@@ -53,9 +66,14 @@ class Collector {
 
 std::vector<DescribedValue> described_values(const Description& description) {
   Collector collector(description);
-  if (const auto* delta = std::get_if<DeltaDescription>(&description.mechanism)) {
-    collector.add_fields("mechanism", *delta, {});
-  }
+  std::visit(Overload{[&](const SerialDescription& arm) {
+                        for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+                          collector.add_serial_joint(join_path("joint", i), arm.joints[i], arm);
+                        }
+                      },
+                      [](const LegsDescription&) {},
+                      [&](const auto& family) { collector.add_fields("mechanism", family, {}); }},
+             description.mechanism);
   for (std::size_t i = 0; i < description.bodies.size(); ++i) {
     const BodyDescription& body = description.bodies[i];
     const std::string table = join_path("body", i);

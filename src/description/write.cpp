@@ -7,6 +7,7 @@
 #include <ostream>
 
 #include "zwidth/description/internal/schema.h"
+#include "zwidth/description/names.h"
 
 namespace zwidth {
 namespace {
@@ -175,24 +176,57 @@ class Writer {
     for (const Line& line : lines) out_ << line.key << " = " << line.value << '\n';
   }
 
-  void write_mechanism(const DeltaDescription& delta) {
-    Lines lines{{"type", text("delta")}};
-    add_fields(lines, delta, DeltaDescription{});
-    add_source(lines, delta.source, delta.sources);
+  template <class Family>
+  void write_family(const char* type, const Family& family) {
+    Lines lines{{"type", text(type)}};
+    add_fields(lines, family, Family{});
+    add_source(lines, family.source, family.sources);
     table("[mechanism]", lines);
+  }
+  void write_mechanism(const DeltaDescription& delta) { write_family("delta", delta); }
+  void write_mechanism(const FiveBarDescription& five_bar) { write_family("five-bar", five_bar); }
+  void write_mechanism(const RCubeDescription& r_cube) { write_family("r-cube", r_cube); }
+
+  void write_mechanism(const SerialDescription& arm) {
+    Lines lines{{"type", text("serial")}};
+    add_source(lines, arm.source, arm.sources);
+    table("[mechanism]", lines);
+    for (const SerialJointDescription& joint : arm.joints) {
+      const bool slides = joint.type == SerialJointType::prismatic;
+      const bool fixed = joint.type == SerialJointType::fixed;
+      Lines row{{"name", text(joint.name)},
+                {"type", text(fixed    ? "fixed"
+                              : slides ? "prismatic"
+                                       : "revolute")}};
+      add_fields(row, joint, SerialJointDescription{});
+      if (!fixed) {
+        const Dimension dimension = slides ? Dimension::length : Dimension::angle;
+        row.push_back({"range", array(std::array{joint.range.min, joint.range.max}, dimension)});
+        row.push_back({"home", quantity(joint.home, dimension)});
+        if (joint.free) row.push_back({"free", "true"});
+      }
+      table("[[joint]]", row);
+    }
   }
 
   void write_mechanism(const LegsDescription& legs) {
-    const bool translates = legs.platform == PlatformFreedom::translation;
-    Lines lines{{"type", text("legs")}, {"platform", text(translates ? "translation" : "rigid")}};
+    std::string platform;
+    for (const auto& [name, freedom] : platform_freedom_names()) {
+      if (freedom == legs.platform) platform = name;
+    }
+    Lines lines{{"type", text("legs")}, {"platform", text(platform)}};
     add_source(lines, legs.source, legs.sources);
     table("[mechanism]", lines);
     for (const LegDescription& leg : legs.legs) {
       const bool rigid = leg.attachment == Attachment::rigid;
-      table("[[leg]]", {{"name", text(leg.name)},
-                        {"tip", array(leg.tip, Dimension::length)},
-                        {"attachment", text(rigid ? "rigid" : "spherical")},
-                        {"platform_point", array(leg.platform_point, Dimension::length)}});
+      Lines lines_of_leg{{"name", text(leg.name)},
+                         {"tip", array(leg.tip, Dimension::length)},
+                         {"attachment", text(rigid ? "rigid" : "spherical")},
+                         {"platform_point", array(leg.platform_point, Dimension::length)}};
+      if (leg.platform_rotation != Matrix3::Identity()) {
+        lines_of_leg.push_back({"platform_rotation", rows(leg.platform_rotation, Dimension::number)});
+      }
+      table("[[leg]]", lines_of_leg);
       for (const JointDescription& joint : leg.joints) write(joint);
     }
   }
@@ -201,6 +235,7 @@ class Writer {
     const Dimension dimension = joint.type == JointType::prismatic ? Dimension::length : Dimension::angle;
     Lines lines{{"name", text(joint.name)}, {"type", text(std::string(name_of(joint.type)))}};
     if (joint.active) lines.push_back({"active", "true"});
+    if (joint.free) lines.push_back({"free", "true"});
     lines.push_back({"axis", array(joint.axis, Dimension::number)});
     lines.push_back({"point", array(joint.point, Dimension::length)});
     if (joint.range != JointDescription{}.range) {

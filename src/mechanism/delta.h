@@ -128,14 +128,12 @@ class DeltaPointMassDynamics {
   double g_;
 };
 
-/// The same delta spelled out as legs: driven revolute, two passive revolutes at the elbow, spherical
-/// attachment, platform held parallel. Bodies named upper_arm and forearm come back as one body per leg.
-LegsDescription delta_legs(const DeltaDescription& description);
+/// Bodies as the delta's legs form has them (driven revolute, two passive revolutes at the elbow, spherical
+/// attachment): those on upper_arm and forearm come back as one body per leg.
+std::vector<BodyDescription> delta_leg_bodies(const DeltaDescription& delta,
+                                              const std::vector<BodyDescription>& bodies);
 
-/// `description` with its mechanism and bodies in the general form.
-Description spelled_out(const Description& description);
-
-/// Driven, elbow and swing angle of one leg of `delta_legs` [rad], for a closed posture.
+/// Driven, elbow and swing angle of one leg of the legs form [rad], for a closed posture.
 Vector3 delta_leg_joints(const DeltaGeometry& geometry, int leg, double theta,
                          const Vector3& position) noexcept;
 

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "zwidth/mechanism/delta.h"
+#include "zwidth/mechanism/families.h"
 
 // The delta in the general form. A leg's zero posture has the upper arm horizontal and the forearm pointing up.
 
@@ -42,7 +43,7 @@ Vector3 delta_leg_joints(const DeltaGeometry& geometry, int leg, double theta,
   return {theta, elbow, swing};
 }
 
-LegsDescription delta_legs(const DeltaDescription& description) {
+LegsDescription legs_of(const DeltaDescription& description) {
   const DeltaGeometry geometry = delta_geometry(description);
   const double home = home_angle(geometry, description.joint_range);
   const Vector3 home_position = delta_forward(geometry, Vector3::Constant(home)).position;
@@ -84,18 +85,14 @@ LegsDescription delta_legs(const DeltaDescription& description) {
   return legs;
 }
 
-Description spelled_out(const Description& description) {
-  const auto* delta = std::get_if<DeltaDescription>(&description.mechanism);
-  if (delta == nullptr) return description;
-
-  const LegsDescription legs = delta_legs(*delta);
-  Description result = description;
-  result.mechanism = legs;
-  result.bodies.clear();
-  for (const BodyDescription& body : description.bodies) {
+std::vector<BodyDescription> delta_leg_bodies(const DeltaDescription& delta,
+                                              const std::vector<BodyDescription>& bodies) {
+  const LegsDescription legs = legs_of(delta);
+  std::vector<BodyDescription> result;
+  for (const BodyDescription& body : bodies) {
     const bool upper = body.on == "upper_arm", forearm = body.on == "forearm";
     if (!upper && !forearm) {
-      result.bodies.push_back(body);
+      result.push_back(body);
       continue;
     }
     for (int i = 0; i < 3; ++i) {
@@ -105,7 +102,7 @@ Description spelled_out(const Description& description) {
       one.on = legs.legs[i].name + "/" + joint.name;
       one.centre = joint.point + frame * body.centre;
       one.inertia = frame * body.inertia * frame.transpose();
-      result.bodies.push_back(one);
+      result.push_back(one);
     }
   }
   return result;

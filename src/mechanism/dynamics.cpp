@@ -130,20 +130,20 @@ FreeForces free_forces(const Posture& posture, const Motions& motions, const Lin
 }
 
 // The closed loops' share: tau = Gamma^T f + J^T w.
-ActiveVector closed(const Rates& rates, const FreeForces& forces) {
+ActiveVector closed(const Mechanism& mechanism, const Rates& rates, const FreeForces& forces) {
   ActiveVector tau = rates.joints.transpose() * forces.joints;
-  tau += rates.tool.topRows<3>().transpose() * forces.platform.force;
-  if (rates.tool.rows() == 6) tau += rates.tool.bottomRows<3>().transpose() * forces.platform.moment;
+  const std::span<const int> axes = mechanism.tool_axes();
+  for (std::size_t r = 0; r < axes.size(); ++r) {
+    const double w = axes[r] < 3 ? forces.platform.force[axes[r]] : forces.platform.moment[axes[r] - 3];
+    tau += rates.tool.row(static_cast<Eigen::Index>(r)).transpose() * w;
+  }
   return tau;
 }
 
-LinkMotion platform_motion(const ToolVector& velocity, const ToolVector& acceleration, const Vector3& base) {
-  LinkMotion motion{velocity.head<3>(), acceleration.head<3>() + base, Vector3::Zero(), Vector3::Zero()};
-  if (velocity.size() == 6) {
-    motion.omega = velocity.tail<3>();
-    motion.alpha = acceleration.tail<3>();
-  }
-  return motion;
+LinkMotion platform_motion(const Mechanism& mechanism, const ToolVector& velocity,
+                           const ToolVector& acceleration, const Vector3& base) {
+  const Vector6 v = mechanism.six_components(velocity), a = mechanism.six_components(acceleration);
+  return {v.head<3>(), a.head<3>() + base, v.tail<3>(), a.tail<3>()};
 }
 
 // Everything but drive inertia and the user's push.
@@ -153,8 +153,10 @@ ActiveVector bodies_torque(const Posture& posture, const Rates& rates, const Act
   const BiasAcceleration bias = bias_acceleration(posture, rates, rate);
   Motions motions;
   move_links(posture, rates.joints * rate, rates.joints * acceleration + bias.joints, base, motions);
-  const LinkMotion platform = platform_motion(rates.tool * rate, rates.tool * acceleration + bias.tool, base);
-  return closed(rates, free_forces(posture, motions, platform));
+  const Mechanism& mechanism = posture.mechanism();
+  const LinkMotion platform =
+      platform_motion(mechanism, rates.tool * rate, rates.tool * acceleration + bias.tool, base);
+  return closed(mechanism, rates, free_forces(posture, motions, platform));
 }
 
 // Velocity of a body's centre and its angular velocity per active rate.
@@ -185,9 +187,9 @@ ActiveMatrix mass_matrix(const Posture& posture, const Rates& rates) {
     const Vector3 c = R * body.centre;
     for (int a = 0; a < n; ++a) {
       if (body.joint < 0) {
-        J.angular.col(a).setZero();
-        if (rates.tool.rows() == 6) J.angular.col(a) = rates.tool.col(a).tail<3>();
-        J.linear.col(a) = rates.tool.col(a).head<3>();
+        const Vector6 twist = mechanism.six_components(rates.tool.col(a));
+        J.linear.col(a) = twist.head<3>();
+        J.angular.col(a) = twist.tail<3>();
       } else {
         J.angular.col(a) = motions[a][body.joint].omega;
         J.linear.col(a) = motions[a][body.joint].velocity;
@@ -212,7 +214,7 @@ ActiveVector gravity_torques(const Posture& posture, const Rates& rates) {
   const ToolVector rest = ToolVector::Zero(mechanism.tool_rows());
   Motions motions;
   move_links(posture, still, still, base, motions);
-  return closed(rates, free_forces(posture, motions, platform_motion(rest, rest, base)));
+  return closed(mechanism, rates, free_forces(posture, motions, platform_motion(mechanism, rest, rest, base)));
 }
 
 ActiveVector inverse_dynamics(const Posture& posture, const ActiveVector& rate,

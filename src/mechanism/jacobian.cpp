@@ -23,8 +23,7 @@ BiasAcceleration bias_acceleration(const Posture& posture, const Rates& rates,
   const Mechanism& mechanism = posture.mechanism();
   const double length = mechanism.characteristic_length();
   const JointVector joint_rate = rates.joints * active_rate;
-  Vector3 platform_rate = Vector3::Zero();
-  if (mechanism.tool_rows() == 6) platform_rate = (rates.tool * active_rate).tail<3>();
+  const Vector3 platform_rate = mechanism.six_components(rates.tool * active_rate).tail<3>();
 
   // Acceleration of each closure row with every joint at constant rate, by recursion along the leg.
   ClosureVector w{};

@@ -4,6 +4,8 @@
 #include <cassert>
 #include <map>
 
+#include "zwidth/mechanism/families.h"
+
 namespace zwidth {
 namespace {
 
@@ -20,6 +22,7 @@ int joint_of(const std::string& on, const std::vector<std::string>& names) {
 Mechanism::Mechanism(const Description& description) : name_(description.name), gravity_(description.gravity) {
   if (const auto* delta = std::get_if<DeltaDescription>(&description.mechanism))
     delta_ = delta_geometry(*delta);
+  closed_form_ = closed_form_of(description.mechanism);
   const Description general = spelled_out(description);
   const LegsDescription& mechanism = std::get<LegsDescription>(general.mechanism);
   assert(mechanism.legs.size() <= kMaxLegs);
@@ -38,6 +41,7 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
     model.count = static_cast<int>(leg.joints.size());
     model.attachment = leg.attachment;
     model.platform_point = leg.platform_point;
+    model.platform_rotation = leg.platform_rotation;
     Vector3 inner = Vector3::Zero();
     for (const JointDescription& joint : leg.joints) {
       JointModel one;
@@ -48,6 +52,7 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
       joint_names_.push_back(leg.name + "/" + joint.name);
       if (joint.active) {
         one.active = active_count();
+        one.free = joint.free;
         active_joints_.push_back(joint_count());
         active_names_.push_back(uses[joint.name] == 1 ? joint.name : joint_names_.back());
       }
@@ -73,6 +78,37 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
     model.inertia = body.inertia;
     bodies_.push_back(model);
   }
+}
+
+std::span<const int> Mechanism::tool_axes() const {
+  static constexpr std::array<int, 6> all = {0, 1, 2, 3, 4, 5};
+  static constexpr std::array<int, 3> planar = {0, 1, 5};
+  switch (platform_) {
+    case PlatformFreedom::translation:
+      return std::span(all).first(3);
+    case PlatformFreedom::planar_translation:
+      return std::span(all).first(2);
+    case PlatformFreedom::planar:
+      return planar;
+    case PlatformFreedom::rotation:
+      return std::span(all).last(3);
+    case PlatformFreedom::rigid:
+      break;
+  }
+  return all;
+}
+
+int Mechanism::linear_rows() const {
+  int rows = 0;
+  for (const int axis : tool_axes()) rows += axis < 3 ? 1 : 0;
+  return rows;
+}
+
+Vector6 Mechanism::six_components(const ToolVector& rows) const {
+  Vector6 six = Vector6::Zero();
+  const std::span<const int> axes = tool_axes();
+  for (std::size_t r = 0; r < axes.size(); ++r) six[axes[r]] = rows[static_cast<Eigen::Index>(r)];
+  return six;
 }
 
 }  // namespace zwidth

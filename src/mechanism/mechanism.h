@@ -1,11 +1,14 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "zwidth/description/description.h"
+#include "zwidth/mechanism/closed_form.h"
 #include "zwidth/mechanism/delta.h"
 #include "zwidth/mechanism/sizes.h"
 
@@ -20,6 +23,7 @@ struct JointModel {
       Vector3::Zero();  ///< from the inner joint's point to this one's, in the inner link's frame [m]
   Interval range;       ///< [rad] or [m]
   int active = -1;      ///< index among the active joints, -1 if passive
+  bool free = false;    ///< active, but moved by the hand alone
 };
 
 /// A rigid body fixed to the link that one joint moves.
@@ -34,7 +38,8 @@ struct LegModel {
   int first = 0;                  ///< index of its first joint
   int count = 0;                  ///< number of joints
   Vector3 tip = Vector3::Zero();  ///< from the last joint's point to the attachment, last link's frame [m]
-  Vector3 platform_point = Vector3::Zero();  ///< attachment in the platform frame [m]
+  Vector3 platform_point = Vector3::Zero();         ///< attachment in the platform frame [m]
+  Matrix3 platform_rotation = Matrix3::Identity();  ///< of the platform at the leg's zero posture
   Attachment attachment = Attachment::rigid;
 };
 
@@ -48,8 +53,17 @@ class Mechanism {
   const std::string& name() const { return name_; }
   int active_count() const { return static_cast<int>(active_joints_.size()); }
   int joint_count() const { return static_cast<int>(joints_.size()); }
-  /// Rows of the Jacobian: 3 for a platform that only translates, 6 otherwise.
-  int tool_rows() const { return platform_ == PlatformFreedom::translation ? 3 : 6; }
+  /// Which components of the twist (vx, vy, vz, wx, wy, wz) the platform may have: the rows of the Jacobian, of
+  /// tool velocities and of tool forces, in this order.
+  std::span<const int> tool_axes() const;
+  /// Rows of the Jacobian: 3 for a platform that only translates, 2 for a point of a plane, 6 for a rigid one.
+  int tool_rows() const { return static_cast<int>(tool_axes().size()); }
+  /// How many of the rows, the first ones, are linear.
+  int linear_rows() const;
+  /// The platform may turn.
+  bool tool_turns() const { return linear_rows() < tool_rows(); }
+  /// A tool vector as all six components, zero where the platform has no freedom.
+  Vector6 six_components(const ToolVector& rows) const;
 
   PlatformFreedom platform() const { return platform_; }
   const std::vector<JointModel>& joints() const { return joints_; }
@@ -62,6 +76,8 @@ class Mechanism {
   /// Index among all joints of active joint `i`.
   int active_joint(int i) const { return active_joints_[i]; }
   Interval active_range(int i) const { return joints_[active_joints_[i]].range; }
+  /// Whether the hand alone moves active joint `i`: no drive does, so its torque is always zero.
+  bool is_free(int i) const { return joints_[active_joints_[i]].free; }
   /// All joints in a posture that closes the loops, from the description: where the general solver starts.
   const JointVector& home_guess() const { return home_guess_; }
   const Vector3& gravity() const { return gravity_; }  ///< [m/s^2], base frame
@@ -71,7 +87,9 @@ class Mechanism {
   /// A length that makes rotations comparable with translations and gaps with sizes: the longest link [m].
   double characteristic_length() const { return characteristic_length_; }
 
-  /// The delta's lengths, if this is one: the closed forms then apply.
+  /// Solves in closed form; null where there is none.
+  const ClosedForm* closed_form() const { return closed_form_.get(); }
+  /// The delta's lengths, if this is one.
   const std::optional<DeltaGeometry>& delta() const { return delta_; }
 
  private:
@@ -87,6 +105,7 @@ class Mechanism {
   Vector3 gravity_;
   ActiveVector drive_inertia_;
   double characteristic_length_ = 0.0;
+  std::shared_ptr<const ClosedForm> closed_form_;  // never changes, so copies share it
   std::optional<DeltaGeometry> delta_;
 };
 

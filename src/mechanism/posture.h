@@ -32,8 +32,8 @@ class Posture {
   const Matrix3& link_rotation(int j) const { return links_[j]; }
   /// Where leg l meets the platform, base frame [m].
   const Vector3& leg_tip(int l) const { return tips_[l]; }
-  /// Orientation of what follows the last joint of leg l (of its last link, unless that is a parallelogram's
-  /// bars).
+  /// Orientation that leg l gives the platform: of what follows its last joint (of its last link, unless that
+  /// is a parallelogram's bars), times `LegModel::platform_rotation`.
   const Matrix3& leg_tip_rotation(int l) const { return tip_rotations_[l]; }
 
  private:

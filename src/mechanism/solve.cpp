@@ -106,11 +106,13 @@ Newton close_loops(Posture& posture, double tolerance, int limit, Budget& budget
     }
     const double share = damping(largest);
     joints += share * change;
-    for (int k = 0; k < 3; ++k) tool.position[k] += share * twist[k];
-    if (mechanism.tool_rows() == 6) {
-      const Vector3 turn = share * Vector3(twist[3], twist[4], twist[5]);
-      const double angle = turn.norm();
-      if (angle > 0.0) tool.rotation = Eigen::AngleAxisd(angle, turn / angle) * tool.rotation;
+    Vector3 turn = Vector3::Zero();
+    const std::span<const int> axes = mechanism.tool_axes();
+    for (std::size_t r = 0; r < axes.size(); ++r) {
+      (axes[r] < 3 ? tool.position[axes[r]] : turn[axes[r] - 3]) += share * twist[r];
+    }
+    if (const double angle = turn.norm(); angle > 0.0) {
+      tool.rotation = Eigen::AngleAxisd(angle, turn / angle) * tool.rotation;
     }
   }
 }
@@ -133,7 +135,7 @@ Posture at_home_guess(const Mechanism& mechanism) {
   PostureBuilder::place_legs(posture);
   Pose& tool = PostureBuilder::tool(posture);
   const int legs = static_cast<int>(mechanism.legs().size());
-  for (int l = 0; l < legs && mechanism.tool_rows() == 6; ++l) {
+  for (int l = 0; l < legs && mechanism.tool_turns(); ++l) {
     if (mechanism.legs()[l].attachment == Attachment::rigid) {
       tool.rotation = posture.leg_tip_rotation(l);
       break;
@@ -435,20 +437,22 @@ Solution inverse_general(const Mechanism& mechanism, const Pose& tool, const Sol
 // ------------------------------------------------------------------------------------------------------
 // Closed forms.
 
-Solution delta_solution(const Mechanism& mechanism, const Vector3& theta, const Vector3& position) {
+// The posture that a closed form has found, judged as any other.
+Solution closed_solution(const Mechanism& mechanism, const ClosedPosture& closed) {
   Solution solution;
+  if (closed.status == SolveStatus::unreachable || closed.status == SolveStatus::degenerate) {
+    solution.status = closed.status;
+    solution.joint = closed.joint;
+    return solution;
+  }
   solution.posture = PostureBuilder::open(mechanism);
   Posture& posture = *solution.posture;
-  JointVector& joints = PostureBuilder::joints(posture);
-  joints.resize(mechanism.joint_count());
-  for (int l = 0; l < 3; ++l) {
-    joints.segment<3>(3 * l) = delta_leg_joints(*mechanism.delta(), l, theta[l], position);
-  }
-  PostureBuilder::tool(posture).position = position;
+  PostureBuilder::joints(posture) = closed.joints;
+  PostureBuilder::tool(posture) = closed.tool;
   PostureBuilder::place_legs(posture);
   solution.residual = 0.0;
   std::array<double, 6> error;
-  for (int l = 0; l < 3; ++l) {
+  for (int l = 0; l < static_cast<int>(mechanism.legs().size()); ++l) {
     const int rows = closure_error(posture, l, error);
     for (int i = 0; i < rows; ++i) solution.residual = std::max(solution.residual, std::abs(error[i]));
   }
@@ -456,19 +460,15 @@ Solution delta_solution(const Mechanism& mechanism, const Vector3& theta, const 
   return solution;
 }
 
-Solution delta_inverse_solution(const Mechanism& mechanism, const Vector3& position,
-                                const std::array<Knee, 3>& knees) {
-  const DeltaInverse inverse = delta_inverse(*mechanism.delta(), position, mechanism.active_range(0), knees);
-  if (inverse.status == SolveStatus::unreachable || inverse.status == SolveStatus::degenerate) {
-    Solution solution;
-    solution.status = inverse.status;
-    solution.joint = mechanism.active_joint(inverse.joint);
-    return solution;
+Solution closed_inverse(const Mechanism& mechanism, const Pose& tool, const SolveOptions& options, int branch) {
+  ClosedPosture closed = mechanism.closed_form()->inverse(tool, options, branch);
+  if (closed.joints.size() == mechanism.joint_count()) {
+    for (int i = 0; i < mechanism.active_count(); ++i) {
+      double& q = closed.joints[mechanism.active_joint(i)];
+      q = internal::wrapped(mechanism.joints()[mechanism.active_joint(i)], q);
+    }
   }
-  Vector3 theta = inverse.theta;
-  for (int i = 0; i < 3; ++i)
-    theta[i] = internal::wrapped(mechanism.joints()[mechanism.active_joint(i)], theta[i]);
-  return delta_solution(mechanism, theta, position);
+  return closed_solution(mechanism, closed);
 }
 
 }  // namespace
@@ -481,25 +481,20 @@ ActiveVector Posture::active() const {
 
 Solution solve_forward(const Mechanism& mechanism, const ActiveVector& active, const SolveOptions& options) {
   assert(active.size() == mechanism.active_count() && active.allFinite());
-  if (options.closed_form && mechanism.delta()) {
-    const DeltaForward forward = delta_forward(*mechanism.delta(), active);
-    if (forward.status == SolveStatus::unreachable || forward.status == SolveStatus::degenerate) {
-      Solution solution;
-      solution.status = forward.status;
-      return solution;
-    }
-    return delta_solution(mechanism, active, forward.position);
+  if (options.closed_form && mechanism.closed_form() != nullptr) {
+    return closed_solution(mechanism, mechanism.closed_form()->forward(active));
   }
   return forward_general(mechanism, active, options);
 }
 
 Solution solve_inverse(const Mechanism& mechanism, const Pose& tool, const SolveOptions& options) {
   assert(tool.position.allFinite() && tool.rotation.allFinite());
-  if (options.closed_form && mechanism.delta()) {
-    return delta_inverse_solution(mechanism, tool.position, {Knee::outwards, Knee::outwards, Knee::outwards});
-  }
   Pose wanted = tool;
-  if (mechanism.platform() == PlatformFreedom::translation) wanted.rotation.setIdentity();
+  if (!mechanism.tool_turns()) wanted.rotation.setIdentity();
+  if (options.closed_form && mechanism.closed_form() != nullptr &&
+      mechanism.closed_form()->branch_count() > 0) {
+    return closed_inverse(mechanism, wanted, options, 0);
+  }
   return inverse_general(mechanism, wanted, options);
 }
 
@@ -507,19 +502,19 @@ std::vector<Solution> solve_inverse_all(const Mechanism& mechanism, const Pose& 
                                         const SolveOptions& options) {
   assert(tool.position.allFinite() && tool.rotation.allFinite());
   std::vector<Solution> solutions;
-  if (options.closed_form && mechanism.delta()) {
-    for (int branch = 0; branch < 8; ++branch) {
-      std::array<Knee, 3> knees;
-      for (int l = 0; l < 3; ++l) knees[l] = (branch >> l & 1) != 0 ? Knee::inwards : Knee::outwards;
-      Solution solution = delta_inverse_solution(mechanism, tool.position, knees);
+  Pose wanted = tool;
+  if (!mechanism.tool_turns()) wanted.rotation.setIdentity();
+  const int branches =
+      options.closed_form && mechanism.closed_form() != nullptr ? mechanism.closed_form()->branch_count() : 0;
+  if (branches > 0) {
+    for (int branch = 0; branch < branches; ++branch) {
+      Solution solution = closed_inverse(mechanism, wanted, options, branch);
       if (solution) solutions.push_back(std::move(solution));
     }
   } else {
     constexpr std::size_t kMostSolutions = 256;
     Posture posture = options.start != nullptr ? *options.start : at_home_guess(mechanism);
-    Pose& goal = PostureBuilder::tool(posture);
-    goal = tool;
-    if (mechanism.platform() == PlatformFreedom::translation) goal.rotation.setIdentity();
+    PostureBuilder::tool(posture) = wanted;
     std::vector<Posture> postures = {posture};
     for (int l = 0; l < static_cast<int>(mechanism.legs().size()); ++l) {
       const LegModel& leg = mechanism.legs()[l];

@@ -6,6 +6,7 @@
 #include "support/deltas.h"
 
 #include "zwidth/analysis/workspace.h"
+#include "zwidth/mechanism/families.h"
 
 namespace zwidth {
 namespace {

@@ -10,6 +10,8 @@
 
 #include "support/deltas.h"
 
+#include "zwidth/mechanism/families.h"
+
 namespace zwidth {
 namespace {
 

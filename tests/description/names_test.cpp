@@ -5,6 +5,7 @@
 #include "description/support.h"
 
 #include "zwidth/mechanism/delta.h"
+#include "zwidth/mechanism/families.h"
 #include "zwidth/mechanism/mechanism.h"
 
 namespace zwidth {

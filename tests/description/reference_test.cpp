@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <gtest/gtest.h>
+#include <set>
 
 #include "description/support.h"
 
@@ -32,14 +33,14 @@ TEST(Reference, TheDocumentHasTheKeysOfTheCode) {
       << "docs/device_file.md is out of date; ZWIDTH_UPDATE=1 description_test writes it anew";
 }
 
+const std::set<std::string> kFamilies = {"delta", "five-bar", "r-cube", "serial", "serial-joint"};
+
 // A file made of nothing but the examples of the reference.
 std::string example_file() {
   std::string text;
   for (const TableReference& table : file_reference()) {
-    if (table.name == "delta" || table.name == "motor") {
-      if (table.name == "motor") break;
-      continue;
-    }
+    if (table.name == "motor") break;
+    if (kFamilies.contains(table.name)) continue;
     std::string header = "[[" + table.name + "]]";
     if (table.name == "device") header = "[device]";
     if (table.name == "legs") header = "[mechanism]";
@@ -60,10 +61,11 @@ TEST(Reference, ItsExamplesMakeAFileThatReads) {
   for (const Problem& problem : problems) ADD_FAILURE() << to_string(problem) << "\n" << example_file();
 }
 
-TEST(Reference, TheExamplesOfADeltaRead) {
+TEST(Reference, TheExamplesOfEachFamilyRead) {
   for (const TableReference& table : file_reference()) {
-    if (table.name != "delta") continue;
+    if (!kFamilies.contains(table.name) || table.name == "serial") continue;
     std::string text = "[device]\nname = \"x\"\n[mechanism]\n";
+    if (table.name == "serial-joint") text += "type = \"serial\"\n[[joint]]\n";
     for (const KeyReference& key : table.keys) {
       if (!key.example.empty()) text += key.key + " = " + key.example + "\n";
     }

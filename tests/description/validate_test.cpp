@@ -9,6 +9,7 @@
 
 #include "zwidth/description/limits.h"
 #include "zwidth/mechanism/delta.h"
+#include "zwidth/mechanism/families.h"
 
 namespace zwidth {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "zwidth/description/validate.h"
 #include "zwidth/mechanism/delta.h"
+#include "zwidth/mechanism/families.h"
 
 namespace zwidth {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "zwidth/description/description.h"
 #include "zwidth/mechanism/delta.h"
+#include "zwidth/mechanism/families.h"
 
 namespace zwidth::test {
 
@@ -64,7 +65,7 @@ inline Description with_bodies(const DeltaDescription& delta) {
 /// six degrees of freedom, whose orientation nothing but the legs holds.
 inline Description with_parallelograms(const DeltaDescription& delta) {
   Description description = with_bodies(delta);
-  LegsDescription legs = delta_legs(delta);
+  LegsDescription legs = legs_of(delta);
   legs.platform = PlatformFreedom::rigid;
   for (LegDescription& leg : legs.legs) {
     leg.joints[2].type = JointType::parallelogram;

@@ -44,7 +44,8 @@ struct Field {
   std::string_view example;  ///< as TOML
 };
 
-/// The fields of Motor, Encoder, Amplifier, Cable, Bearing, Material, DeltaDescription, CapstanDescription,
+/// The fields of Motor, Encoder, Amplifier, Cable, Bearing, Material, DeltaDescription, FiveBarDescription,
+/// RCubeDescription, SerialJointDescription, CapstanDescription,
 /// FlexureDescription, DriveOutputDescription and DriveDescription.
 template <class Owner>
 std::span<const Field<Owner>> fields();

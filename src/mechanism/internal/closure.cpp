@@ -9,6 +9,7 @@ void Closure::factor(const Posture& posture) noexcept {
   const Mechanism& mechanism = posture.mechanism();
   leg_count_ = static_cast<int>(mechanism.legs().size());
   tool_rows_ = mechanism.tool_rows();
+  linear_rows_ = mechanism.linear_rows();
   length_ = mechanism.characteristic_length();
 
   int left_over = 0;

@@ -49,7 +49,7 @@ class Closure {
       leg.passive.back_substitute(y[l], passive);
       for (int c = 0; c < leg.passive.columns(); ++c) rates[leg.joints[c]] = passive[c];
     }
-    for (int c = 0; c < tool_rows_; ++c) twist[c] = c < 3 ? x[c] : x[c] / length_;
+    for (int c = 0; c < tool_rows_; ++c) twist[c] = c < linear_rows_ ? x[c] : x[c] / length_;
   }
 
   /// Reciprocal condition of K: 0 where the platform keeps a freedom with all active joints locked.
@@ -70,6 +70,7 @@ class Closure {
 
   int leg_count_ = 0;
   int tool_rows_ = 0;
+  int linear_rows_ = 0;  // of them
   double length_ = 1.0;
   std::array<Leg, kMaxLegs> legs_;
   SmallQr<6 * kMaxLegs, 6> platform_;  // K

@@ -51,7 +51,7 @@ void PostureBuilder::place_leg(Posture& posture, int l) noexcept {
     posture.links_[j] = arm;
   }
   posture.tips_[l] = p + arm * leg.tip;
-  posture.tip_rotations_[l] = R;
+  posture.tip_rotations_[l] = R * leg.platform_rotation;
 }
 
 void PostureBuilder::place_legs(Posture& posture) noexcept {
@@ -97,17 +97,14 @@ void closure_column(const Posture& posture, int l, int j, std::array<double, 6>&
 
 void platform_columns(const Posture& posture, int l, std::array<std::array<double, 6>, 6>& columns) noexcept {
   const Mechanism& mechanism = posture.mechanism();
-  for (int k = 0; k < 3; ++k) {
-    columns[k].fill(0.0);
-    columns[k][k] = 1.0;
-  }
-  if (mechanism.tool_rows() == 3) return;
-  const double length = mechanism.characteristic_length();
-  const Vector3 arm = posture.tool().rotation * mechanism.legs()[l].platform_point;
-  for (int k = 0; k < 3; ++k) {
-    const Vector3 linear = Vector3::Unit(k).cross(arm) / length;
-    columns[3 + k] = {linear[0], linear[1], linear[2], 0.0, 0.0, 0.0};
-    columns[3 + k][3 + k] = 1.0;
+  const std::span<const int> axes = mechanism.tool_axes();
+  for (std::size_t c = 0; c < axes.size(); ++c) {
+    columns[c].fill(0.0);
+    columns[c][axes[c]] = 1.0;
+    if (axes[c] < 3) continue;
+    const Vector3 arm = posture.tool().rotation * mechanism.legs()[l].platform_point;
+    const Vector3 linear = Vector3::Unit(axes[c] - 3).cross(arm) / mechanism.characteristic_length();
+    for (int i = 0; i < 3; ++i) columns[c][i] = linear[i];
   }
 }
 

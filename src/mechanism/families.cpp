@@ -1,0 +1,33 @@
+#include "zwidth/mechanism/families.h"
+
+#include "zwidth/mechanism/delta.h"
+
+namespace zwidth {
+namespace {
+
+template <class... Functions>
+struct Overload : Functions... {
+  using Functions::operator()...;
+};
+
+}  // namespace
+
+std::shared_ptr<const ClosedForm> closed_form_of(const MechanismDescription& mechanism) {
+  return std::visit(Overload{[](const DeltaDescription& delta) { return closed_form_of(delta); },
+                             [](const auto&) { return std::shared_ptr<const ClosedForm>(); }},
+                    mechanism);
+}
+
+Description spelled_out(const Description& description) {
+  if (std::holds_alternative<LegsDescription>(description.mechanism)) return description;
+  Description result = description;
+  result.mechanism = std::visit(Overload{[](const LegsDescription& legs) { return legs; },
+                                         [](const auto& family) { return legs_of(family); }},
+                                description.mechanism);
+  if (const auto* delta = std::get_if<DeltaDescription>(&description.mechanism)) {
+    result.bodies = delta_leg_bodies(*delta, description.bodies);
+  }
+  return result;
+}
+
+}  // namespace zwidth

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+
+#include "zwidth/description/description.h"
+#include "zwidth/mechanism/closed_form.h"
+
+/// The families of mechanisms that a description may name, each as legs and, where it has one, as a closed
+/// form. A new family starts with a struct in description.h and two functions here.
+
+namespace zwidth {
+
+/// The same mechanism spelled out as legs.
+LegsDescription legs_of(const DeltaDescription& delta);
+LegsDescription legs_of(const FiveBarDescription& five_bar);
+LegsDescription legs_of(const RCubeDescription& r_cube);
+LegsDescription legs_of(const SerialDescription& arm);
+
+/// `description` with its mechanism and bodies in the general form.
+Description spelled_out(const Description& description);
+
+/// Null where the family has none.
+std::shared_ptr<const ClosedForm> closed_form_of(const MechanismDescription& mechanism);
+std::shared_ptr<const ClosedForm> closed_form_of(const DeltaDescription& delta);
+
+}  // namespace zwidth

@@ -3,9 +3,9 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 
 #include "zwidth/analysis/internal/probe.h"
+#include "zwidth/analysis/internal/trace.h"
 #include "zwidth/analysis/workspace.h"
 #include "zwidth/mechanism/batch_delta.h"
 
@@ -14,94 +14,27 @@ namespace {
 
 using internal::Probe;
 
-// Outlines of the inside of a predicate on a grid of nu x nv points, by marching squares. Where an outline
-// crosses a grid line is found by bisection.
-class Tracer {
- public:
-  Tracer(Probe& probe, const SliceMap& grid, const std::vector<char>& inside)
-      : probe_(probe), grid_(grid), inside_(inside) {}
-
-  std::vector<Outline> trace() {
-    for (int iv = 0; iv + 1 < grid_.nv; ++iv) {
-      for (int iu = 0; iu + 1 < grid_.nu; ++iu) cross_cell(iu, iv);
-    }
-    std::vector<Outline> outlines;
-    while (!next_.empty()) {
-      Outline outline;
-      const int first = std::ranges::min_element(next_, {}, [](const auto& link) { return link.first; })->first;
-      for (auto link = next_.find(first); link != next_.end(); link = next_.find(following_)) {
-        outline.push_back(crossing(link->first));
-        following_ = link->second;
-        next_.erase(link);
-      }
-      if (outline.size() > 2) outlines.push_back(std::move(outline));
-    }
-    return outlines;
-  }
-
- private:
-  bool at(int iu, int iv) const { return inside_[iv * grid_.nu + iu] != 0; }
-  // Grid lines from point (iu, iv) to its right (0) or upper (1) neighbour have numbers.
-  int edge(int iu, int iv, int up) const { return 2 * (iv * grid_.nu + iu) + up; }
-
-  // Links the edges by which outlines pass a cell, the inside on their left.
-  void cross_cell(int iu, int iv) {
-    const bool corner[4] = {at(iu, iv), at(iu + 1, iv), at(iu + 1, iv + 1), at(iu, iv + 1)};
-    const int edges[4] = {edge(iu, iv, 0), edge(iu + 1, iv, 1), edge(iu, iv + 1, 0), edge(iu, iv, 1)};
-    // Going round the cell counter-clockwise, runs of inside corners begin at `enter` and end at `leave`.
-    int enter[2], leave[2], enters = 0, leaves = 0;
-    for (int e = 0; e < 4; ++e) {
-      const bool from = corner[e], to = corner[(e + 1) % 4];
-      if (!from && to) enter[enters++] = edges[e];
-      if (from && !to) leave[leaves++] = edges[e];
-    }
-    if (enters == 1) next_[leave[0]] = enter[0];
-    if (enters == 2) {
-      // Two opposite corners inside: joined across the middle or not. `enter` and `leave` alternate; a run that
-      // begins at enter[0] ends at leave[0] unless the walk began inside.
-      const bool joined = probe_.inverse(point(iu + 0.5, iv + 0.5)).inside;
-      const int shift = corner[0] ? 1 : 0;
-      next_[leave[shift]] = enter[joined ? 1 : 0];
-      next_[leave[1 - shift]] = enter[joined ? 0 : 1];
-    }
-  }
-
-  Vector3 point(double iu, double iv) const {
+// Outlines of the workspace on the grid of a slice. Where one crosses a grid line is found by bisection.
+std::vector<Outline> outlines_of(Probe& probe, const SliceMap& grid, const std::vector<char>& inside) {
+  const auto point = [&](double iu, double iv) {
     Vector3 p;
-    p[grid_.slice.axis] = grid_.slice.at;
-    p[grid_.slice.u] = grid_.u_range.min + grid_.u_range.width() * iu / (grid_.nu - 1);
-    p[grid_.slice.v] = grid_.v_range.min + grid_.v_range.width() * iv / (grid_.nv - 1);
+    p[grid.slice.axis] = grid.slice.at;
+    p[grid.slice.u] = grid.u_range.min + grid.u_range.width() * iu / (grid.nu - 1);
+    p[grid.slice.v] = grid.v_range.min + grid.v_range.width() * iv / (grid.nv - 1);
     return p;
-  }
-
-  std::array<double, 2> crossing(int number) {
-    const int start = number / 2, iu = start % grid_.nu, iv = start / grid_.nu, up = number % 2;
-    Vector3 in = point(iu, iv), out = point(iu + (1 - up), iv + up);
-    if (!at(iu, iv)) std::swap(in, out);
+  };
+  const auto at = [&](int iu, int iv) { return inside[iv * grid.nu + iu] != 0; };
+  const auto joined = [&](int iu, int iv) { return probe.inverse(point(iu + 0.5, iv + 0.5)).inside; };
+  const auto crossing = [&](const internal::GridLine& line) -> std::array<double, 2> {
+    Vector3 in = point(line.iu, line.iv), out = point(line.iu + (line.up ? 0 : 1), line.iv + (line.up ? 1 : 0));
+    if (!at(line.iu, line.iv)) std::swap(in, out);
     while ((out - in).norm() > 1e-7) {
       const Vector3 middle = 0.5 * (in + out);
-      (probe_.inverse(middle).inside ? in : out) = middle;
+      (probe.inverse(middle).inside ? in : out) = middle;
     }
-    return {in[grid_.slice.u], in[grid_.slice.v]};
-  }
-
-  Probe& probe_;
-  const SliceMap& grid_;
-  const std::vector<char>& inside_;
-  std::unordered_map<int, int> next_;  // the edge that follows an edge on its outline
-  int following_ = 0;
-};
-
-double enclosed_area(const std::vector<Outline>& outlines) {
-  double area = 0.0;  // outlines of holes run the other way round
-  for (const Outline& outline : outlines) {
-    for (std::size_t p = 0; p < outline.size(); ++p) {
-      const auto& a = outline[p];
-      const auto& b = outline[(p + 1) % outline.size()];
-      area += 0.5 * (a[0] * b[1] - a[1] * b[0]);
-    }
-  }
-  return area;
+    return {in[grid.slice.u], in[grid.slice.v]};
+  };
+  return internal::trace_outlines(grid.nu, grid.nv, at, joined, crossing);
 }
 
 }  // namespace
@@ -157,8 +90,8 @@ SliceMap map_slice(const Mechanism& mechanism, const Extents& extents, int axis,
       for (int f = 0; f < static_cast<int>(Figure::leg_singularity); ++f) map.values[f][p] = values[f];
     }
   }
-  map.slice.outlines = Tracer(probe, map, inside).trace();
-  map.slice.area = enclosed_area(map.slice.outlines);
+  map.slice.outlines = outlines_of(probe, map, inside);
+  map.slice.area = internal::enclosed_area(map.slice.outlines);
   return map;
 }
 

@@ -1,5 +1,6 @@
 #include "zwidth/analysis/workspace.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>

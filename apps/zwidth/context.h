@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -12,10 +13,6 @@
 #include "zwidth/description/description.h"
 
 /// What every verb shares: its outcome, the device it reads, and how it prints.
-
-namespace CLI {
-class App;
-}
 
 namespace zwidth {
 

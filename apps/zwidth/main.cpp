@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <clocale>
 #include <exception>
 #include <fmt/format.h>

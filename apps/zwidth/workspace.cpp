@@ -1,6 +1,5 @@
 #include "zwidth/analysis/workspace.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "zwidth/description/description.h"
 #include "zwidth/mechanism/closed_form.h"
@@ -15,6 +16,11 @@ LegsDescription legs_of(const DeltaDescription& delta);
 LegsDescription legs_of(const FiveBarDescription& five_bar);
 LegsDescription legs_of(const RCubeDescription& r_cube);
 LegsDescription legs_of(const SerialDescription& arm);
+
+/// The Denavit-Hartenberg rows of an arm that is given by axes and points, with rows of type fixed in front and
+/// behind where base or tool need them: joint values mean the same. Nothing if the leg is no such arm: a joint
+/// is passive or a parallelogram, or the platform hangs on a point.
+std::optional<SerialDescription> rows_of(const LegDescription& leg);
 
 /// `description` with its mechanism and bodies in the general form.
 Description spelled_out(const Description& description);

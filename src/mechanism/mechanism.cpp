@@ -67,6 +67,7 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
     legs_.push_back(model);
   }
   assert(joint_count() <= kMaxJoints && active_count() <= kMaxActive);
+  if (characteristic_length_ == 0.0) characteristic_length_ = 1.0;  // nothing but turns in one point: any length does
   home_guess_ = Eigen::Map<const Eigen::VectorXd>(home.data(), static_cast<Eigen::Index>(home.size()));
   drive_inertia_ = ActiveVector::Zero(active_count());
 

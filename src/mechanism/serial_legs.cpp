@@ -1,9 +1,10 @@
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "zwidth/mechanism/families.h"
 
-// A serial arm in the general form: one leg, whose axes and points are those of the Denavit-Hartenberg frames
-// with all joints at zero.
+// A serial arm as a leg, whose axes and points are those of the Denavit-Hartenberg frames with all joints at
+// zero, and such a leg as Denavit-Hartenberg rows.
 
 namespace zwidth {
 
@@ -34,6 +35,88 @@ LegsDescription legs_of(const SerialDescription& arm) {
   legs.platform = PlatformFreedom::rigid;
   legs.legs = {leg};
   return legs;
+}
+
+namespace {
+
+constexpr double kParallel = 1e-12;  // sine of the angle between axes that count as parallel
+constexpr double kSame = 1e-12;      // [m]
+
+// The row that takes a frame to one whose z axis lies along a line.
+SerialJointDescription row_to(Eigen::Isometry3d& frame, const Vector3& point, const Vector3& direction) {
+  const Vector3 x = frame.linear().col(0), y = frame.linear().col(1), z = frame.linear().col(2);
+  const Vector3 between = point - frame.translation(), across = z.cross(direction);
+  SerialJointDescription row;
+  Vector3 normal;  // common to both axes: x of the new frame
+  if (across.norm() > kParallel) {
+    // Feet of the common normal: d z + a normal + b direction = between.
+    normal = across.normalized();
+    row.a = between.dot(normal);
+    row.d = between.dot(direction.cross(normal)) / z.dot(direction.cross(normal));
+    if (std::abs(row.a) < kSame) row.a = 0.0;
+    if (row.a < 0.0 || (row.a == 0.0 && normal.dot(x) < -kParallel)) {
+      normal = -normal;
+      row.a = -row.a;
+    }
+  } else {
+    const Vector3 sideways = between - z * between.dot(z);
+    row.a = sideways.norm();
+    normal = row.a > kSame ? Vector3(sideways / row.a) : x;
+    if (row.a <= kSame) row.a = 0.0;
+  }
+  if (std::abs(row.d) < kSame) row.d = 0.0;
+  row.theta = std::atan2(normal.dot(y), normal.dot(x));
+  row.alpha = std::atan2(across.dot(normal), z.dot(direction));
+  frame.translation() += row.d * z + row.a * normal;
+  frame.linear().col(0) = normal;
+  frame.linear().col(1) = direction.cross(normal);
+  frame.linear().col(2) = direction;
+  return row;
+}
+
+bool is_identity(const SerialJointDescription& row) {
+  return row.theta == 0.0 && row.d == 0.0 && row.a == 0.0 && row.alpha == 0.0;
+}
+
+}  // namespace
+
+std::optional<SerialDescription> rows_of(const LegDescription& leg) {
+  if (leg.attachment != Attachment::rigid || leg.joints.empty()) return std::nullopt;
+  for (const JointDescription& joint : leg.joints) {
+    if (!joint.active || joint.type == JointType::parallelogram) return std::nullopt;
+  }
+  SerialDescription arm;
+  Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
+  SerialJointDescription base = row_to(frame, leg.joints.front().point, leg.joints.front().axis.normalized());
+  base.name = "base";
+  base.type = SerialJointType::fixed;
+  if (!is_identity(base)) arm.joints.push_back(base);
+
+  const Vector3 tool = leg.tip - leg.platform_rotation * leg.platform_point;
+  for (std::size_t j = 0; j < leg.joints.size(); ++j) {
+    const JointDescription& joint = leg.joints[j];
+    const bool last = j + 1 == leg.joints.size();
+    SerialJointDescription row =
+        last ? row_to(frame, tool, leg.platform_rotation.col(2))
+             : row_to(frame, leg.joints[j + 1].point, leg.joints[j + 1].axis.normalized());
+    row.name = joint.name;
+    row.type = joint.type == JointType::prismatic ? SerialJointType::prismatic : SerialJointType::revolute;
+    row.range = joint.range;
+    row.home = joint.home;
+    row.free = joint.free;
+    arm.joints.push_back(row);
+  }
+  // What is left is a turn about the tool's z axis and a shift along it.
+  SerialJointDescription hand;
+  hand.name = "tool";
+  hand.type = SerialJointType::fixed;
+  const Vector3 x = leg.platform_rotation.col(0);
+  hand.theta = std::atan2(x.dot(frame.linear().col(1)), x.dot(frame.linear().col(0)));
+  hand.d = (tool - frame.translation()).dot(frame.linear().col(2));
+  if (std::abs(hand.theta) < kParallel) hand.theta = 0.0;
+  if (std::abs(hand.d) < kSame) hand.d = 0.0;
+  if (!is_identity(hand)) arm.joints.push_back(hand);
+  return arm;
 }
 
 }  // namespace zwidth

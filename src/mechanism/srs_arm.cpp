@@ -74,13 +74,10 @@ SineCosine shoulder(double a, double b, double p, double z) {
   return unit(a * p + b * z, b * p - a * z);
 }
 
-ArmRoots arm_roots(const SrsLengths& lengths, const Vector3& r, SrsGiven given, double given_angle) {
-  if (!valid(lengths, r) || !std::isfinite(given_angle)) return {.status = SrsStatus::invalid_argument};
+ArmRoots arm_roots(const SrsLengths& lengths, const Vector3& r, const Bend& bend, SrsGiven given,
+                   const SineCosine& fixed) {
   const double d3 = lengths.upper_arm, d4 = lengths.forearm;
   const double x = r.x(), y = r.y(), z = r.z();
-  const Bend bend = bend_of(lengths, r.squaredNorm());
-  if (bend.status != SrsStatus::solved) return {.status = bend.status};
-  const SineCosine fixed = sine_cosine(given_angle);
   const double s4 = bend.sine, rho2 = x * x + y * y, b = d3 + d4 * bend.cosine;
   constexpr double kOnAxis2 = kOnAxis * kOnAxis;
 
@@ -124,6 +121,13 @@ ArmRoots arm_roots(const SrsLengths& lengths, const Vector3& r, SrsGiven given, 
     }
   }
   return roots;
+}
+
+ArmRoots arm_roots(const SrsLengths& lengths, const Vector3& r, SrsGiven given, double given_angle) {
+  if (!valid(lengths, r) || !std::isfinite(given_angle)) return {.status = SrsStatus::invalid_argument};
+  const Bend bend = bend_of(lengths, r.squaredNorm());
+  if (bend.status != SrsStatus::solved) return {.status = bend.status};
+  return arm_roots(lengths, r, bend, given, sine_cosine(given_angle));
 }
 
 // C(0, 4) = Rz(t1) Ry(t2) Rz(t3) Ry(t4).
@@ -400,6 +404,125 @@ SrsAngles srs_on_circle(const SrsLengths& lengths, const Pose& wrist, const SrsE
     theta[6] = opposite(theta[6]);
   }
   return theta;
+}
+
+Interval srs_reach(const SrsLengths& lengths, const Interval& theta4) noexcept {
+  const double d3 = lengths.upper_arm, d4 = lengths.forearm;
+  const auto holds = [&](double angle) {  // some whole number of turns from it
+    return angle + 2.0 * kPi * std::ceil((theta4.min - angle) / (2.0 * kPi)) <= theta4.max;
+  };
+  const double first = std::cos(theta4.min), last = std::cos(theta4.max);
+  const double largest = holds(0.0) ? 1.0 : std::max(first, last);
+  const double smallest = holds(kPi) ? -1.0 : std::min(first, last);
+  // r^2 = d3^2 + d4^2 + 2 d3 d4 c4 (3.22), as a square and what is missing to it: exact where c4 is 1 or -1.
+  const double longest = d3 + d4, shortest = d3 - d4;
+  return {std::sqrt(shortest * shortest + 2.0 * d3 * d4 * (1.0 + smallest)),
+          std::sqrt(std::max(longest * longest - 2.0 * d3 * d4 * (1.0 - largest), 0.0))};
+}
+
+SrsReach::SrsReach(const SrsLengths& lengths, const std::array<Interval, 4>& ranges) noexcept
+    : lengths_(lengths) {
+  constexpr double kSlack = 1e-12;  // [rad]
+  for (int i = 0; i < 4; ++i) {
+    Window& window = window_[i];
+    const double half = 0.5 * ranges[i].width();
+    window.cos_middle = std::cos(ranges[i].middle());
+    window.sin_middle = std::sin(ranges[i].middle());
+    window.bounded = half < kPi;
+    window.locked = half < kSlack;
+    window.cos_half = window.bounded ? std::cos(half + kSlack) : -2.0;
+    for (int e = 0; e < 2; ++e) {
+      const double end = e == 0 ? ranges[i].min : ranges[i].max;
+      window.end[e] = {std::sin(end), std::cos(end)};
+    }
+  }
+}
+
+// Whether either reading of the posture has all its joints within their ranges, apart from the one that was
+// given.
+template <class Root>
+bool SrsReach::within(const Root& root, int given) const noexcept {
+  const auto inside = [&](int i, double sine, double cosine) {
+    const Window& w = window_[i];
+    return cosine * w.cos_middle + sine * w.sin_middle >= w.cos_half;
+  };
+  for (const double sigma : {1.0, -1.0}) {  // of theta4
+    if (!inside(3, sigma * root.s4, root.c4)) continue;
+    std::array<SineCosine, 3> t = root.t;
+    if (sigma < 0.0) {  // see ArmRoots
+      if (given == 2) {
+        t[0] = {.sine = -t[0].sine, .cosine = -t[0].cosine};
+        t[1].sine = -t[1].sine;
+      } else {
+        t[2] = {.sine = -t[2].sine, .cosine = -t[2].cosine};
+      }
+    }
+    bool all = true;
+    for (int i = 0; i < 3 && all; ++i) all = i == given || inside(i, t[i].sine, t[i].cosine);
+    if (all) return true;
+  }
+  return false;
+}
+
+bool SrsReach::contains(const Vector3& wrist) const noexcept {
+  constexpr double kOff = 1e-9;  // [m]
+  if (wrist.x() * wrist.x() + wrist.y() * wrist.y() >= kOff * kOff) return off_axis_contains(wrist);
+  // On axis 1 every theta1 does: a point beside the axis, in the middle of what theta1 may be, stands for it.
+  const Vector3 aside = kOff * Vector3(window_[0].cos_middle, window_[0].sin_middle, 0.0);
+  const Vector3 on_axis(0.0, 0.0, wrist.z());
+  return off_axis_contains(on_axis + aside) || off_axis_contains(on_axis - aside);
+}
+
+bool SrsReach::off_axis_contains(const Vector3& wrist) const noexcept {
+  struct Root {
+    std::array<SineCosine, 3> t;
+    double s4, c4;
+  };
+  const Bend bend = bend_of(lengths_, wrist.squaredNorm());
+  if (bend.status == SrsStatus::unreachable) return false;
+  const Window& w4 = window_[3];
+  const double along = bend.cosine * w4.cos_middle, across = std::abs(bend.sine * w4.sin_middle);
+  if (along + across < w4.cos_half) return false;  // neither theta4 nor -theta4
+
+  const auto try_given = [&](int i, const std::array<double, 2>& end) {
+    const ArmRoots roots =
+        arm_roots(lengths_, wrist, bend, SrsGiven(i + 1), {.sine = end[0], .cosine = end[1]});
+    if (roots.status != SrsStatus::solved) return false;
+    for (const ArmDirections& one : roots.root) {
+      if (within(Root{one, bend.sine, bend.cosine}, i)) return true;
+    }
+    return false;
+  };
+  for (int i = 2; i >= 0 && bend.status == SrsStatus::solved;
+       --i) {  // a locked joint leaves nothing else to try
+    if (window_[i].locked) return try_given(i, window_[i].end[0]);
+  }
+  if (bend.status == SrsStatus::solved) {
+    // The middle of theta3's range decides most points; then the ends of all ranges.
+    if (try_given(2, {window_[2].sin_middle, window_[2].cos_middle})) return true;
+    for (const int i : {2, 1, 0}) {
+      if (!window_[i].bounded) continue;
+      for (const auto& end : window_[i].end) {
+        if (try_given(i, end)) return true;
+      }
+    }
+  }
+  // No joint meets an end anywhere on the elbow's circle: all of it is possible, or nothing, on either reading
+  // of the shoulder.
+  const SrsElbowCircle circle = srs_elbow_circle(lengths_, wrist);
+  const Vector3 e = circle.centre + circle.cosine_arm, f = wrist - e;
+  const double out = std::sqrt(e.x() * e.x() + e.y() * e.y());
+  if (out == 0.0) return false;
+  for (const double sigma2 : {1.0, -1.0}) {
+    const SineCosine t1 = unit(sigma2 * e.x(), sigma2 * e.y()), t2 = unit(e.z(), sigma2 * out);
+    const double fx = t2.cosine * (t1.cosine * f.x() + t1.sine * f.y()) - t2.sine * f.z();
+    const double fy = t1.cosine * f.y() - t1.sine * f.x();
+    const bool open = bend.status != SrsStatus::solved;  // stretched or folded: theta3 may be anything
+    const SineCosine t3 =
+        open ? SineCosine{.sine = window_[2].sin_middle, .cosine = window_[2].cos_middle} : unit(fx, fy);
+    if (within(Root{{t1, t2, t3}, bend.sine, bend.cosine}, open ? 2 : -1)) return true;
+  }
+  return false;
 }
 
 std::array<SrsSingularity, 4> srs_singularities(const SrsAngles& theta) noexcept {

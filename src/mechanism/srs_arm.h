@@ -94,6 +94,37 @@ SrsElbowCircle srs_elbow_circle(const SrsLengths& lengths, const Vector3& wrist)
 SrsAngles srs_on_circle(const SrsLengths& lengths, const Pose& wrist, const SrsElbowCircle& circle,
                         double elbow, int branch, const SrsAngles& near) noexcept;
 
+// ------------------------------------------------------------------------------------------------------- reach
+
+/// Distances of the wrist from the shoulder that an elbow within a range allows [m].
+Interval srs_reach(const SrsLengths& lengths, const Interval& theta4) noexcept;
+
+/// Where the wrist can be with theta1..theta4 within ranges, whatever the tool's orientation: decided exactly,
+/// without a search. If any elbow is possible then one is with one of the joints at an end of its range, or all
+/// are.
+class SrsReach {
+ public:
+  /// Ranges [rad] of theta1..theta4, modulo a turn; one of width 0 is a locked joint. REQUIRES: min <= max.
+  SrsReach(const SrsLengths& lengths, const std::array<Interval, 4>& ranges) noexcept;
+
+  bool contains(const Vector3& wrist) const noexcept;
+
+ private:
+  // A range of angles as cos(angle - middle) >= cos(half the width).
+  struct Window {
+    double cos_middle = 1.0, sin_middle = 0.0, cos_half = -2.0;
+    std::array<std::array<double, 2>, 2> end{};  // sine and cosine of both ends
+    bool bounded = false;                        // narrower than a turn
+    bool locked = false;
+  };
+  template <class Root>
+  bool within(const Root& root, int given) const noexcept;
+  bool off_axis_contains(const Vector3& wrist) const noexcept;
+
+  SrsLengths lengths_;
+  std::array<Window, 4> window_;
+};
+
 // ----------------------------------------------------------------------------------------------- singularities
 
 /// A set of postures in which the Jacobian loses rank.

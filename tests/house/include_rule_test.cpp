@@ -49,6 +49,7 @@ std::optional<std::string> library_of(const std::string& include) {
                                                                 {"oneapi/tbb", "TBB::tbb"},
                                                                 {"hwy/", "hwy::hwy"},
                                                                 {"mujoco/", "mujoco::mujoco"},
+                                                                {"kdl/", "orocos_kdl::orocos_kdl"},
                                                                 {"gtest/", "GTest::gtest"},
                                                                 {"benchmark/", "benchmark::benchmark"}};
   for (const auto& [prefix, library] : kLibraries) {

@@ -4,6 +4,7 @@
 
 #include "verbs.h"
 
+#include "zwidth/actuation/motor.h"
 #include "zwidth/description/problem.h"
 
 /// `zwidth devices` and `zwidth parts`: what comes with zwidth.
@@ -63,6 +64,12 @@ std::vector<Column> overview<Motor>() {
           {"g cm²", "rotor_inertia", 1e7}};
 }
 template <>
+std::vector<Column> overview<Gearhead>() {
+  return {{"turns", "reduction_numerator", 1.0}, {"per turns", "reduction_denominator", 1.0},
+          {"N m", "continuous_torque", 1.0},     {"N m short", "intermittent_torque", 1.0},
+          {"efficiency", "max_efficiency", 1.0}, {"deg backlash", "backlash", kDegrees}};
+}
+template <>
 std::vector<Column> overview<Encoder>() {
   return {{"pulses/turn", "pulses_per_turn", 1.0}, {"kHz", "max_frequency", 1e-3}};
 }
@@ -94,7 +101,8 @@ class Parts {
   Parts(const PartsArguments& arguments, const Terminal& terminal) : arguments_(arguments), sheet_(terminal) {}
 
   int run() {
-    const std::vector<std::string> kinds = {"motor", "encoder", "amplifier", "cable", "bearing", "material"};
+    const std::vector<std::string> kinds = {"motor", "gearhead", "encoder", "amplifier",
+                                            "cable", "bearing",  "material"};
     std::string kind = arguments_.kind;
     if (kind.ends_with('s')) kind.pop_back();
     if (!kind.empty() && std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
@@ -108,6 +116,7 @@ class Parts {
       name_ = arguments_.name;
     }
     each<Motor>();
+    each<Gearhead>();
     each<Encoder>();
     each<Amplifier>();
     each<Cable>();
@@ -157,7 +166,20 @@ class Parts {
       }
       entry["values"] = numbers;
       list_.push_back(entry);
-      if (!name_.empty()) one(kind, part.info, values);
+      if constexpr (std::is_same_v<Part, Motor>) {
+        Json checks = Json::array();
+        for (const MotorConsistency& check : motor_consistency(part)) {
+          checks.push_back({{"key", check.key},
+                            {"given", json_number(check.given)},
+                            {"computed", json_number(check.computed)},
+                            {"difference", json_number(check.difference())}});
+        }
+        list_.back()["consistency"] = checks;
+      }
+      if (!name_.empty()) {
+        one(kind, part.info, values);
+        if constexpr (std::is_same_v<Part, Motor>) consistency(part);
+      }
       std::vector<std::string> row{part.info.name};
       for (const Column& column : columns_of_kind) {
         for (const PartValue& value : values) {
@@ -187,6 +209,17 @@ class Parts {
     }
   }
 
+  void consistency(const Motor& motor) {
+    sheet_.heading("What the data sheet repeats, beside what follows from its other values");
+    std::vector<std::vector<std::string>> rows;
+    for (const MotorConsistency& check : motor_consistency(motor)) {
+      const std::string_view unit = check.dimension == Dimension::number ? "" : si_unit(check.dimension);
+      rows.push_back({check.key, readable(check.given, unit), readable(check.computed, unit),
+                      fmt::format("{:+.1f} %", 100.0 * check.difference())});
+    }
+    sheet_.table({"", "given", "computed", "apart"}, rows);
+  }
+
   const PartsArguments& arguments_;
   Sheet sheet_;
   std::string kind_;
@@ -214,7 +247,7 @@ void add_parts(CLI::App& app, Context& context) {
                             "  zwidth parts maxon-epos2-50-5            one part, each value with its source");
   auto arguments = std::make_shared<PartsArguments>();
   verb->add_option("KIND", arguments->kind,
-                   "motor, encoder, amplifier, cable, bearing or material; or a part's name");
+                   "motor, gearhead, encoder, amplifier, cable, bearing or material; or a part's name");
   verb->add_option("NAME", arguments->name, "name of the part");
   add_json_flag(*verb, arguments->json);
   verb->callback([arguments, &context] {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "terminal.h"
+
 #include "zwidth/analysis/data_sheet.h"
 #include "zwidth/mechanism/jacobian.h"
 
@@ -97,6 +99,25 @@ NearestPoint descend(const Mechanism& mechanism, Solution start, const Vector3& 
 }
 
 }  // namespace
+
+TransmissionText transmission_text(const TransmissionDescription& transmission) {
+  struct Text {
+    TransmissionText operator()(const DirectDriveDescription&) const { return {"direct", ""}; }
+    TransmissionText operator()(const CapstanDescription& capstan) const {
+      return {"cable capstan", capstan.cable.info.title};
+    }
+    TransmissionText operator()(const RatioDescription& ratio) const {
+      return {trimmed(ratio.ratio) + ":1",
+              ratio.efficiency < 1.0 ? "efficiency " + trimmed(ratio.efficiency) : ""};
+    }
+    TransmissionText operator()(const GearheadDescription& gear) const {
+      return {"gearhead",
+              gear.gearhead.info.title +
+                  (gear.further_ratio == 1.0 ? "" : ", then " + trimmed(gear.further_ratio) + ":1")};
+    }
+  };
+  return std::visit(Text{}, transmission);
+}
 
 std::optional<NearestPoint> nearest_reachable(const Mechanism& mechanism, const Vector3& position) {
   const int n = mechanism.active_count();

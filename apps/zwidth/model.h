@@ -29,6 +29,13 @@ struct Model {
   ActiveVector joint_step() const;         ///< [rad]
 };
 
+/// A transmission in words.
+struct TransmissionText {
+  std::string kind;    ///< "cable capstan", "10:1", "gearhead", "direct"
+  std::string detail;  ///< the part, say; may be empty
+};
+TransmissionText transmission_text(const TransmissionDescription& transmission);
+
 /// The reachable tool position nearest to another.
 struct NearestPoint {
   Vector3 position = Vector3::Zero();  ///< [m], base frame

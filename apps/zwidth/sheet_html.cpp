@@ -7,6 +7,7 @@
 #include <set>
 
 #include "figure.h"
+#include "model.h"
 #include "sheet_text.h"
 #include "terminal.h"
 
@@ -423,13 +424,12 @@ class Page {
     const DriveSheet& drive = sheet_.drives[i];
     const DriveDescription& description = drive.drive.description();
     section(fmt::format("drive-{}", i), sheet_.drives.size() > 1 ? fmt::format("Drive {}", i + 1) : "Drive");
-    const auto* capstan = std::get_if<CapstanDescription>(&description.transmission);
+    const TransmissionText transmission = transmission_text(description.transmission);
     body_ += fmt::format(
-        "<p>Moves {}. Motor <b>{}</b>, encoder <b>{}</b>, amplifier <b>{}</b>, {}.</p>\n",
+        "<p>Moves {}. Motor <b>{}</b>, encoder <b>{}</b>, amplifier <b>{}</b>, transmission <b>{}</b>.</p>\n",
         escaped(fmt::format("{}", fmt::join(drive.joints, ", "))), escaped(description.motor.info.title),
         escaped(description.encoder.info.title), escaped(description.amplifier.info.title),
-        capstan != nullptr ? fmt::format("cable capstan with <b>{}</b>", escaped(capstan->cable.info.title))
-                           : std::string("no transmission"));
+        escaped(transmission.kind + (transmission.detail.empty() ? "" : ", " + transmission.detail)));
     how("Computed from the values of the drive and its parts, which stand below with their sources.");
     body_ += "<div class=\"card pair\">";
     for (const DriveFigure& figure : drive.figures) {
@@ -487,6 +487,7 @@ class Page {
       part(drive.encoder);
       part(drive.amplifier);
       if (const auto* capstan = std::get_if<CapstanDescription>(&drive.transmission)) part(capstan->cable);
+      if (const auto* gear = std::get_if<GearheadDescription>(&drive.transmission)) part(gear->gearhead);
       if (drive.preloader) part(drive.preloader->material);
     }
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "zwidth/description/names.h"
 #include "zwidth/description/values.h"
 
 namespace zwidth {
@@ -38,7 +39,9 @@ Json torque_json(const TorqueLimit& limit) {
   entry["limited_by"] = to_string(limit.limited_by);
   entry["motor"] = json_number(limit.motor);
   entry["slip"] = optional_number(limit.slip);
+  entry["gearhead"] = optional_number(limit.gearhead);
   entry["amplifier"] = json_number(limit.amplifier);
+  entry["supply"] = json_number(limit.supply);
   return entry;
 }
 
@@ -110,8 +113,9 @@ Json drive_json(const DriveSheet& sheet) {
   entry["motor"] = description.motor.info.name;
   entry["encoder"] = description.encoder.info.name;
   entry["amplifier"] = description.amplifier.info.name;
-  const bool capstan = std::holds_alternative<CapstanDescription>(description.transmission);
-  entry["transmission"] = capstan ? "capstan" : "direct";
+  entry["transmission"] = transmission_type(description.transmission);
+  const auto* gear = std::get_if<GearheadDescription>(&description.transmission);
+  if (gear != nullptr) entry["gearhead"] = gear->gearhead.info.name;
   entry["torque"] = {{"continuous", torque_json(sheet.continuous)},
                      {"peak", torque_json(sheet.peak)},
                      {"stall", torque_json(sheet.stall)}};
@@ -119,6 +123,8 @@ Json drive_json(const DriveSheet& sheet) {
                     {"limited_by", to_string(sheet.speed.limited_by)},
                     {"unloaded", json_number(sheet.speed.unloaded)},
                     {"at_continuous_torque", json_number(sheet.speed.at_continuous_torque)},
+                    {"motor", optional_number(sheet.speed.motor)},
+                    {"gearhead", optional_number(sheet.speed.gearhead)},
                     {"encoder", optional_number(sheet.speed.encoder)}};
   Json figures;
   for (const DriveFigure& figure : sheet.figures)

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <vector>
 
+#include "model.h"
+
 #include "zwidth/description/units.h"
 #include "zwidth/description/values.h"
 
@@ -260,11 +262,8 @@ class SheetText {
     text_.row("motor", description.motor.info.title);
     text_.row("encoder", description.encoder.info.title);
     text_.row("amplifier", description.amplifier.info.title);
-    if (const auto* capstan = std::get_if<CapstanDescription>(&description.transmission)) {
-      text_.row("transmission", "cable capstan", capstan->cable.info.title);
-    } else {
-      text_.row("transmission", "direct");
-    }
+    const TransmissionText transmission = transmission_text(description.transmission);
+    text_.row("transmission", transmission.kind, transmission.detail);
     std::vector<std::vector<std::string>> rows;
     const auto& figures = drive.figures;
     const size_t half = (figures.size() + 1) / 2;

@@ -8,6 +8,7 @@
 #include "zwidth/actuation/amplifier.h"
 #include "zwidth/actuation/cable.h"
 #include "zwidth/actuation/encoder.h"
+#include "zwidth/actuation/gearhead.h"
 #include "zwidth/math/linear_system.h"
 
 namespace zwidth {
@@ -18,6 +19,13 @@ using std::numbers::pi;
 void require(const char* quantity, double value) {
   if (!(value > 0.0) || !std::isfinite(value)) {
     throw InvalidDrive(std::string(quantity) + " must be positive and finite, not " + std::to_string(value));
+  }
+}
+
+void require_share(const char* quantity, double value) {
+  require(quantity, value);
+  if (value > 1.0) {
+    throw InvalidDrive(std::string(quantity) + " must be at most 1, not " + std::to_string(value));
   }
 }
 
@@ -77,6 +85,8 @@ const char* to_string(Limiter limiter) {
       return "motor";
     case Limiter::slip:
       return "slip";
+    case Limiter::gearhead:
+      return "gearhead";
     case Limiter::amplifier:
       return "amplifier";
     case Limiter::supply:
@@ -101,6 +111,21 @@ Drive::Drive(const DriveDescription& description, const Interval& joint_range)
   if (const auto* capstan = std::get_if<CapstanDescription>(&description.transmission)) {
     capstan_ = make_capstan(*capstan, joint_range);
     ratio_ = capstan_->ratio;
+  } else if (const auto* ratio = std::get_if<RatioDescription>(&description.transmission)) {
+    require("the transmission's ratio", ratio->ratio);
+    require_share("the transmission's efficiency", ratio->efficiency);
+    ratio_ = ratio->ratio;
+    efficiency_ = ratio->efficiency;
+  } else if (const auto* gear = std::get_if<GearheadDescription>(&description.transmission)) {
+    require("the gearhead's reduction", gear->gearhead.reduction_numerator);
+    require("the denominator of the gearhead's reduction", gear->gearhead.reduction_denominator);
+    require("the gearhead's continuous torque", gear->gearhead.continuous_torque);
+    require("the gearhead's intermittent torque", gear->gearhead.intermittent_torque);
+    require_share("the gearhead's efficiency", gear->gearhead.max_efficiency);
+    require("the ratio behind the gearhead", gear->further_ratio);
+    require_share("the efficiency behind the gearhead", gear->further_efficiency);
+    ratio_ = reduction(gear->gearhead) * gear->further_ratio;
+    efficiency_ = gear->gearhead.max_efficiency * gear->further_efficiency;
   }
   if (description.preloader) {
     preloader_ = Flexure::make(*description.preloader);
@@ -109,7 +134,7 @@ Drive::Drive(const DriveDescription& description, const Interval& joint_range)
           "the preloader's lengths, width, height and elastic modulus must be positive and finite");
     }
   }
-  current_per_torque_ = 1.0 / (description.motor.torque_constant * ratio_);
+  current_per_torque_ = 1.0 / (description.motor.torque_constant * ratio_ * efficiency_);
   angle_per_count_ = zwidth::angular_resolution(counts_per_turn(description.encoder), ratio_);
 }
 
@@ -121,40 +146,65 @@ std::optional<Drive> Drive::try_make(const DriveDescription& description, const 
   }
 }
 
-TorqueLimit Drive::torque_limit(double motor_torque, double amplifier_current) const {
+const Gearhead* Drive::gearhead() const {
+  const auto* gear = std::get_if<GearheadDescription>(&description_.transmission);
+  return gear == nullptr ? nullptr : &gear->gearhead;
+}
+
+double Drive::further_ratio() const {
+  const auto* gear = std::get_if<GearheadDescription>(&description_.transmission);
+  return gear == nullptr ? 1.0 : gear->further_ratio;
+}
+
+double Drive::after_gearhead() const {
+  const auto* gear = std::get_if<GearheadDescription>(&description_.transmission);
+  return gear == nullptr ? 1.0 : gear->further_ratio * gear->further_efficiency;
+}
+
+TorqueLimit Drive::torque_limit(double motor_torque, double amplifier_current, double gearhead_torque) const {
+  const Motor& motor = description_.motor;
+  const double voltage = available_voltage(description_.amplifier, description_.supply_voltage);
   TorqueLimit limit;
-  limit.motor = motor_torque * ratio_;
+  limit.motor = motor_torque * ratio_ * efficiency_;
   limit.amplifier = torque_for_current(amplifier_current);
+  limit.supply = zwidth::stall_torque(motor.torque_constant, motor.resistance, voltage) * ratio_ * efficiency_;
   limit.usable = limit.motor;
   limit.limited_by = Limiter::motor;
-  if (limit.amplifier < limit.usable) {
-    limit.usable = limit.amplifier;
-    limit.limited_by = Limiter::amplifier;
-  }
+  const auto take = [&limit](double torque, Limiter limiter) {
+    if (torque >= limit.usable) return;
+    limit.usable = torque;
+    limit.limited_by = limiter;
+  };
+  take(limit.supply, Limiter::supply);
+  take(limit.amplifier, Limiter::amplifier);
   if (capstan_) {
     limit.slip = capstan_->slip_torque(std::get<CapstanDescription>(description_.transmission).preload);
-    if (*limit.slip < limit.usable) {
-      limit.usable = *limit.slip;
-      limit.limited_by = Limiter::slip;
-    }
+    take(*limit.slip, Limiter::slip);
+  }
+  if (gearhead() != nullptr) {
+    limit.gearhead = gearhead_torque * after_gearhead();
+    take(*limit.gearhead, Limiter::gearhead);
   }
   return limit;
 }
 
 TorqueLimit Drive::continuous_torque() const {
-  return torque_limit(description_.motor.nominal_torque, description_.amplifier.continuous_current);
+  return torque_limit(description_.motor.nominal_torque, description_.amplifier.continuous_current,
+                      gearhead() == nullptr ? 0.0 : gearhead()->continuous_torque);
 }
 
 TorqueLimit Drive::peak_torque() const {
   return torque_limit(description_.motor.nominal_torque * description_.peak_factor,
-                      description_.amplifier.max_current);
+                      description_.amplifier.max_current,
+                      gearhead() == nullptr ? 0.0 : gearhead()->intermittent_torque);
 }
 
 TorqueLimit Drive::stall_torque() const {
   const Motor& motor = description_.motor;
   const double voltage = available_voltage(description_.amplifier, description_.supply_voltage);
   return torque_limit(zwidth::stall_torque(motor.torque_constant, motor.resistance, voltage),
-                      description_.amplifier.max_current);
+                      description_.amplifier.max_current,
+                      gearhead() == nullptr ? 0.0 : gearhead()->intermittent_torque);
 }
 
 SpeedLimit Drive::speed() const {
@@ -165,12 +215,17 @@ SpeedLimit Drive::speed() const {
   limit.at_continuous_torque = std::max(0.0, motor_speed(motor, voltage, motor.nominal_torque)) / ratio_;
   limit.usable = limit.unloaded;
   limit.limited_by = Limiter::supply;
+  const auto take = [&limit](std::optional<double>& speed, double value, Limiter limiter) {
+    if (!given(value)) return;
+    speed = value;
+    if (value >= limit.usable) return;
+    limit.usable = value;
+    limit.limited_by = limiter;
+  };
+  take(limit.motor, motor.max_speed / ratio_, Limiter::motor);
+  if (gearhead() != nullptr) take(limit.gearhead, gearhead()->max_input_speed / ratio_, Limiter::gearhead);
   if (given(description_.encoder.max_frequency)) {
-    limit.encoder = encoder_max_speed(description_.encoder) / ratio_;
-    if (*limit.encoder < limit.usable) {
-      limit.usable = *limit.encoder;
-      limit.limited_by = Limiter::encoder;
-    }
+    take(limit.encoder, encoder_max_speed(description_.encoder) / ratio_, Limiter::encoder);
   }
   return limit;
 }
@@ -188,12 +243,13 @@ double Drive::angular_resolution() const {
 
 double Drive::input_inertia() const {
   return description_.motor.rotor_inertia + description_.encoder.code_wheel_inertia +
-         description_.input_inertia;
+         description_.input_inertia + (gearhead() == nullptr ? 0.0 : gearhead()->inertia);
 }
 
 double Drive::reflected_inertia() const {
-  return zwidth::reflected_inertia(input_inertia(), description_.output ? description_.output->inertia : 0.0,
-                                   ratio_);
+  double at_joint = description_.output ? description_.output->inertia : 0.0;
+  if (const auto* ratio = std::get_if<RatioDescription>(&description_.transmission)) at_joint += ratio->inertia;
+  return zwidth::reflected_inertia(input_inertia(), at_joint, ratio_);
 }
 
 std::optional<double> Drive::perceived_mass() const {
@@ -205,6 +261,13 @@ std::optional<double> Drive::perceived_mass() const {
 
 double Drive::friction_torque() const {
   return torque_for_current(description_.motor.no_load_current);
+}
+
+std::optional<double> Drive::backlash() const {
+  double angle = kNotGiven;
+  if (const auto* ratio = std::get_if<RatioDescription>(&description_.transmission)) angle = ratio->backlash;
+  if (gearhead() != nullptr) angle = gearhead()->backlash / further_ratio();
+  return given(angle) ? std::optional(angle) : std::nullopt;
 }
 
 std::optional<double> Drive::cable_stiffness(double joint_angle) const {
@@ -223,6 +286,10 @@ std::optional<double> Drive::cable_stiffness(double joint_angle) const {
 }
 
 std::optional<double> Drive::joint_stiffness(double joint_angle) const {
+  double known = kNotGiven;
+  if (const auto* ratio = std::get_if<RatioDescription>(&description_.transmission)) known = ratio->stiffness;
+  if (const auto* gear = std::get_if<GearheadDescription>(&description_.transmission)) known = gear->stiffness;
+  if (given(known)) return known;
   const auto stiffness = cable_stiffness(joint_angle);
   if (!stiffness) {
     return std::nullopt;
@@ -246,6 +313,21 @@ std::optional<TwoMassModel> Drive::two_mass(double joint_angle) const {
                              .contact_damping = description_.output->contact_damping,
                              .cable_stiffness = *stiffness,
                              .torque_constant = description_.motor.torque_constant});
+}
+
+void Drive::add_gearhead_margins(std::vector<Margin>& margins) const {
+  const Gearhead& gear = *gearhead();
+  const Motor& motor = description_.motor;
+  const double output = reduction(gear) * gear.max_efficiency;
+  const double peak = motor.nominal_torque * description_.peak_factor;
+  add(margins, "gearhead torque, continuous", motor.nominal_torque * output, gear.continuous_torque, "N m",
+      "the gearhead must carry the nominal motor torque for ever");
+  add(margins, "gearhead torque, short", peak * output, gear.intermittent_torque, "N m",
+      "the gearhead must carry the peak motor torque for a short time");
+  add(margins, "gearhead speed", speed().unloaded * ratio_, gear.max_input_speed, "rad/s",
+      "the gearhead must permit the fastest that the motor can turn at the available voltage, unloaded");
+  add(margins, "motor shaft", motor.shaft_diameter, gear.max_motor_shaft, "m",
+      "the motor's shaft must fit the gearhead");
 }
 
 void Drive::add_capstan_margins(std::vector<Margin>& margins) const {
@@ -292,8 +374,8 @@ std::vector<Margin> Drive::margins() const {
   add(margins, "peak current", motor.nominal_torque * description_.peak_factor / motor.torque_constant,
       amplifier.max_current, "A", "the amplifier must give the current of the peak torque");
   if (thermal_) {
-    add(margins, "winding heat", motor.nominal_current, thermal_->continuous_current(), "A",
-        "the nominal current must not overheat the winding in a room of 25 degrees Celsius");
+    add(margins, "winding heat", motor.nominal_torque / motor.torque_constant, thermal_->continuous_current(),
+        "A", "the current of the nominal torque must not overheat the winding in a room of 25 degrees Celsius");
   }
   add(margins, "supply voltage", description_.supply_voltage, amplifier.max_supply_voltage, "V",
       "the supply must not exceed what the amplifier takes");
@@ -303,6 +385,9 @@ std::vector<Margin> Drive::margins() const {
       speed().unloaded * ratio_ / (2.0 * pi) * description_.encoder.pulses_per_turn,
       description_.encoder.max_frequency, "Hz",
       "the encoder must follow the fastest the motor can turn at the available voltage, unloaded");
+  add(margins, "motor speed", speed().unloaded * ratio_, motor.max_speed, "rad/s",
+      "the motor must permit the fastest that it can turn at the available voltage, unloaded");
+  if (gearhead() != nullptr) add_gearhead_margins(margins);
   if (capstan_) {
     add_capstan_margins(margins);
   }
@@ -317,10 +402,13 @@ std::vector<DriveFigure> Drive::figures() const {
     }
   };
   put("ratio", "ratio", ratio_, "");
+  if (efficiency_ < 1.0) put("efficiency", "efficiency", efficiency_, "");
   put("continuous_torque", "continuous torque", continuous_torque().usable, "N m");
   put("peak_torque", "peak torque", peak_torque().usable, "N m");
   put("stall_torque", "stall torque", stall_torque().usable, "N m");
   put("slip_torque", "torque at which the cable slips", continuous_torque().slip, "N m");
+  put("gearhead_torque", "torque that the gearhead may carry for ever", continuous_torque().gearhead, "N m");
+  put("backlash", "backlash at the joint", backlash(), "rad");
   put("friction_torque", "friction of the motor", friction_torque(), "N m");
   put("torque_resolution", "torque step", torque_resolution(), "N m");
   put("angular_resolution", "angle step", angular_resolution(), "rad");
@@ -334,6 +422,7 @@ std::vector<DriveFigure> Drive::figures() const {
       "s");
   put("current_loop_bandwidth", "current loop bandwidth (-3 dB)", current_loop_.bandwidth(), "Hz");
   put("current_loop_damping", "current loop damping ratio", current_loop_.damping_ratio(), "");
+  put("joint_stiffness", "stiffness felt at the joint, angle zero", joint_stiffness(0.0), "N m/rad");
   if (capstan_) {
     const auto& capstan = std::get<CapstanDescription>(description_.transmission);
     put("preload", "cable preload", capstan.preload, "N");
@@ -341,7 +430,6 @@ std::vector<DriveFigure> Drive::figures() const {
         capstan_->min_preload(description_.motor.nominal_torque), "N");
     put("cable_length", "cable length", capstan_->cable_length, "m");
     put("cable_stiffness", "cable stiffness at joint angle zero", cable_stiffness(0.0), "N/m");
-    put("joint_stiffness", "stiffness felt at the joint, angle zero", joint_stiffness(0.0), "N m/rad");
     if (preloader_) {
       put("preloader_stiffness", "preloader stiffness", preloader_->stiffness(), "N/m");
       put("preloader_deflection", "preloader deflection under the preload",

@@ -23,17 +23,19 @@ class InvalidDrive : public std::invalid_argument {
 };
 
 /// What holds a limit.
-enum class Limiter { motor, slip, amplifier, supply, encoder };
+enum class Limiter { motor, slip, gearhead, amplifier, supply, encoder };
 
-/// "motor", "slip", "amplifier", "supply voltage", "encoder".
+/// "motor", "slip", "gearhead", "amplifier", "supply voltage", "encoder".
 const char* to_string(Limiter limiter);
 
 /// Largest joint torque [N m], and what each element of the drive would allow.
 struct TorqueLimit {
-  double motor = 0.0;          ///< the motor's torque at the joint
-  std::optional<double> slip;  ///< at which the cable slips; empty where nothing can slip
-  double amplifier = 0.0;      ///< the torque of the amplifier's current
-  double usable = 0.0;         ///< the least of them
+  double motor = 0.0;              ///< the motor's torque at the joint
+  std::optional<double> slip;      ///< at which the cable slips; empty where nothing can slip
+  std::optional<double> gearhead;  ///< that the gearhead may carry; empty without one
+  double amplifier = 0.0;          ///< the torque of the amplifier's current
+  double supply = 0.0;             ///< at standstill and the available voltage
+  double usable = 0.0;             ///< the least of them
   Limiter limited_by = Limiter::motor;
 };
 
@@ -41,9 +43,11 @@ struct TorqueLimit {
 struct SpeedLimit {
   double unloaded = 0.0;  ///< at the available voltage, without load
   double at_continuous_torque =
-      0.0;                        ///< at the available voltage, under the continuous torque; 0 if out of reach
-  std::optional<double> encoder;  ///< that the encoder can follow; empty when its limit is not given
-  double usable = 0.0;            ///< the lesser of unloaded and encoder
+      0.0;                         ///< at the available voltage, under the continuous torque; 0 if out of reach
+  std::optional<double> encoder;   ///< that the encoder can follow; empty when its limit is not given
+  std::optional<double> motor;     ///< that the motor permits; empty when not given
+  std::optional<double> gearhead;  ///< that the gearhead permits; empty without one, or when not given
+  double usable = 0.0;             ///< the least of all but the loaded one
   Limiter limited_by = Limiter::supply;
 };
 
@@ -82,17 +86,25 @@ class Drive {
 
   /// Turns of the motor per turn of the joint; 1 for a direct drive.
   double ratio() const noexcept { return ratio_; }
+  /// Share of the motor's torque that reaches the joint while the drive pushes. (A drive that is pushed resists
+  /// by as much again.)
+  double efficiency() const noexcept { return efficiency_; }
   const std::optional<Capstan>& capstan() const { return capstan_; }
   const std::optional<Flexure>& preloader() const { return preloader_; }
   const std::optional<ThermalModel>& thermal() const { return thermal_; }
   const CurrentLoop& current_loop() const { return current_loop_; }
 
-  /// Nominal motor torque; continuous amplifier current.
+  /// Nominal motor torque; continuous amplifier current and gearhead torque.
   TorqueLimit continuous_torque() const;
-  /// Nominal motor torque times the peak factor; the amplifier's maximum current.
+  /// Nominal motor torque times the peak factor; the amplifier's maximum current, the gearhead's intermittent
+  /// torque.
   TorqueLimit peak_torque() const;
-  /// Stall torque of the motor at the available voltage; the amplifier's maximum current.
+  /// Stall torque of the motor at the available voltage; the amplifier's maximum current, the gearhead's
+  /// intermittent torque.
   TorqueLimit stall_torque() const;
+
+  /// Motor torque [N m] for a joint torque [N m].
+  double motor_torque(double joint_torque) const noexcept { return joint_torque / (ratio_ * efficiency_); }
 
   SpeedLimit speed() const;
 
@@ -103,11 +115,12 @@ class Drive {
   double reflected_inertia() const;   ///< all of the drive's inertia felt at the joint [kg m^2]
   std::optional<double> perceived_mass() const;  ///< at the output's radius [kg]; empty without an output
   double friction_torque() const;                ///< of the motor's no-load current, at the joint [N m]
+  std::optional<double> backlash() const;        ///< at the joint [rad]; empty when not given
 
   /// Stiffness of the cable along itself [N/m] with the joint at an angle [rad]; empty for a direct drive, an
   /// unknown rope, or an angle out of the sector's reach.
   std::optional<double> cable_stiffness(double joint_angle) const;
-  /// That stiffness felt at the joint [N m/rad].
+  /// Stiffness of the transmission felt at the joint [N m/rad]: the cable's, or as given; empty otherwise.
   std::optional<double> joint_stiffness(double joint_angle) const;
 
   /// Two-mass model with the joint at an angle [rad]; empty without a capstan or an output.
@@ -119,7 +132,8 @@ class Drive {
   /// What is worth printing of the drive, in a fixed order.
   std::vector<DriveFigure> figures() const;
 
-  /// Motor current [A] for a joint torque [N m], friction not compensated. Any input, no limit applied.
+  /// Motor current [A] for a joint torque [N m] that the drive pushes with, the motor's friction not
+  /// compensated. Any input, no limit applied.
   double current_for_torque(double joint_torque) const noexcept { return joint_torque * current_per_torque_; }
 
   /// Joint torque [N m] of a motor current [A], friction not counted.
@@ -131,8 +145,13 @@ class Drive {
   }
 
  private:
-  TorqueLimit torque_limit(double motor_torque, double amplifier_current) const;
+  TorqueLimit torque_limit(double motor_torque, double amplifier_current, double gearhead_torque) const;
+  const Gearhead* gearhead() const;
+  /// Joint torque per torque of the gearhead's output, and turns of that per turn of the joint.
+  double after_gearhead() const;
+  double further_ratio() const;
   void add_capstan_margins(std::vector<Margin>& margins) const;
+  void add_gearhead_margins(std::vector<Margin>& margins) const;
 
   DriveDescription description_;
   Interval joint_range_;
@@ -141,6 +160,7 @@ class Drive {
   std::optional<ThermalModel> thermal_;
   CurrentLoop current_loop_;
   double ratio_ = 1.0;
+  double efficiency_ = 1.0;
   double current_per_torque_ = 0.0;
   double angle_per_count_ = 0.0;
 };

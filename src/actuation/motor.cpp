@@ -40,6 +40,42 @@ double stall_torque(double torque_constant, double resistance, double voltage) {
   return torque_constant * voltage / require_positive("resistance", resistance);
 }
 
+double speed_constant(double torque_constant) {
+  return 1.0 / require_positive("torque constant", torque_constant);
+}
+
+double no_load_speed(double torque_constant, double resistance, double voltage, double no_load_current) {
+  return (voltage - resistance * no_load_current) / require_positive("torque constant", torque_constant);
+}
+
+double max_efficiency(double resistance, double voltage, double no_load_current) {
+  const double share = no_load_current * resistance / require_positive("voltage", voltage);
+  if (!(share >= 0.0)) throw std::invalid_argument("resistance and no-load current must not be negative");
+  return share < 1.0 ? std::pow(1.0 - std::sqrt(share), 2) : 0.0;
+}
+
+std::vector<MotorConsistency> motor_consistency(const Motor& motor) {
+  const double U = motor.supply_voltage, R = motor.resistance, kt = motor.torque_constant,
+               I0 = motor.no_load_current;
+  std::vector<MotorConsistency> list;
+  const auto add = [&](const char* key, double value, double computed, Dimension dimension) {
+    if (given(value)) list.push_back({key, value, computed, dimension});
+  };
+  add("stall_torque", motor.stall_torque, stall_torque(kt, R, U), Dimension::torque);
+  add("speed_constant", motor.speed_constant, speed_constant(kt), Dimension::speed_constant);
+  add("speed_torque_gradient", motor.speed_torque_gradient, speed_torque_gradient(kt, R),
+      Dimension::speed_torque_gradient);
+  add("mechanical_time_constant", motor.mechanical_time_constant,
+      mechanical_time_constant(motor.rotor_inertia, equivalent_damping(kt, kt, R)), Dimension::time);
+  add("no_load_speed", motor.no_load_speed, no_load_speed(kt, R, U, I0), Dimension::angular_speed);
+  add("max_efficiency", motor.max_efficiency, max_efficiency(R, U, I0), Dimension::number);
+  add("starting_current", motor.starting_current, U / R, Dimension::current);
+  // A straight line of speed against torque has its most power in the middle.
+  add("max_output_power", motor.max_output_power, 0.25 * stall_torque(kt, R, U) * no_load_speed(kt, R, U, I0),
+      Dimension::power);
+  return list;
+}
+
 double equivalent_damping(const Motor& motor) {
   return equivalent_damping(motor.torque_constant, motor.torque_constant, motor.resistance,
                             motor.viscous_damping);

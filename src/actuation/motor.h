@@ -1,8 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "zwidth/description/parts.h"
+#include "zwidth/description/units.h"
 
 /// A direct-current motor (brushed, or brushless with its commutation), electrical, mechanical and thermal
 /// (Neal 2015, section 4.1). All quantities at the motor shaft.
@@ -33,6 +36,30 @@ double speed_torque_gradient(double torque_constant, double resistance);
 
 /// Torque with the shaft held at a voltage, k_t V / R [N m].
 double stall_torque(double torque_constant, double resistance, double voltage);
+
+/// Speed per voltage without friction, 1/k_t [rad/s/V].
+double speed_constant(double torque_constant);
+
+/// Speed without load at a voltage, (V - R I0)/k_t [rad/s].
+double no_load_speed(double torque_constant, double resistance, double voltage, double no_load_current);
+
+/// Highest share of the electrical power that reaches the shaft at a voltage, (1 - sqrt(I0 R/V))^2; zero if the
+/// voltage does not suffice to turn it.
+double max_efficiency(double resistance, double voltage, double no_load_current);
+
+/// One value that a data sheet repeats, beside what follows from voltage, resistance, torque constant, rotor
+/// inertia and no-load current.
+struct MotorConsistency {
+  std::string key;        ///< as in parts/motors.toml
+  double given = 0.0;     ///< [SI]
+  double computed = 0.0;  ///< [SI]
+  Dimension dimension = Dimension::number;
+  double difference() const { return computed / given - 1.0; }  ///< relative
+};
+
+/// Every value of the data sheet that can be checked so, in a fixed order. A difference beyond two hundredths
+/// or so is a misprint, a coarse rounding or another operating point.
+std::vector<MotorConsistency> motor_consistency(const Motor& motor);
 
 /// What follows from the data of one motor. The back-EMF constant is taken equal to the torque constant, as the
 /// energy balance demands (and as Neal 2015 computes, though he prints 1/k_n).

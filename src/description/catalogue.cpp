@@ -89,6 +89,7 @@ Catalogue Catalogue::load(const fs::path& directory) {
   std::vector<Problem> problems;
   const fs::path parts = directory / "parts";
   catalogue.motors_ = load_parts<Motor>(parts / "motors.toml", problems);
+  catalogue.gearheads_ = load_parts<Gearhead>(parts / "gearheads.toml", problems);
   catalogue.encoders_ = load_parts<Encoder>(parts / "encoders.toml", problems);
   catalogue.amplifiers_ = load_parts<Amplifier>(parts / "amplifiers.toml", problems);
   catalogue.cables_ = load_parts<Cable>(parts / "cables.toml", problems);
@@ -102,6 +103,10 @@ Catalogue Catalogue::load(const fs::path& directory) {
 template <>
 const std::vector<Motor>& Catalogue::all<Motor>() const {
   return motors_;
+}
+template <>
+const std::vector<Gearhead>& Catalogue::all<Gearhead>() const {
+  return gearheads_;
 }
 template <>
 const std::vector<Encoder>& Catalogue::all<Encoder>() const {
@@ -132,6 +137,7 @@ const Part* Catalogue::find(std::string_view name) const {
   return found == parts.end() ? nullptr : &*found;
 }
 template const Motor* Catalogue::find<Motor>(std::string_view) const;
+template const Gearhead* Catalogue::find<Gearhead>(std::string_view) const;
 template const Encoder* Catalogue::find<Encoder>(std::string_view) const;
 template const Amplifier* Catalogue::find<Amplifier>(std::string_view) const;
 template const Cable* Catalogue::find<Cable>(std::string_view) const;

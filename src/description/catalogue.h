@@ -28,11 +28,12 @@ class Catalogue {
   /// Nothing in it.
   Catalogue() = default;
 
-  /// Reads DIRECTORY/parts/{motors,encoders,amplifiers,cables,bearings,materials}.toml and lists
+  /// Reads DIRECTORY/parts/{motors,gearheads,encoders,amplifiers,cables,bearings,materials}.toml and lists
   /// DIRECTORY/devices/*.toml. Throws DescriptionError with everything that is wrong in the parts files.
   static Catalogue load(const std::filesystem::path& directory = default_data_directory());
 
-  /// Parts of one kind (Motor, Encoder, Amplifier, Cable, Bearing, Material), in the order of their file.
+  /// Parts of one kind (Motor, Gearhead, Encoder, Amplifier, Cable, Bearing, Material), in the order of their
+  /// file.
   template <class Part>
   const std::vector<Part>& all() const;
   /// Null if there is no such part.
@@ -45,6 +46,7 @@ class Catalogue {
  private:
   std::filesystem::path directory_;
   std::vector<Motor> motors_;
+  std::vector<Gearhead> gearheads_;
   std::vector<Encoder> encoders_;
   std::vector<Amplifier> amplifiers_;
   std::vector<Cable> cables_;
@@ -67,7 +69,8 @@ struct PartValue {
   std::string source;   ///< of this value: its own, else the part's
 };
 
-/// Every value of a Motor, Encoder, Amplifier, Cable, Bearing or Material, in the order of its definition.
+/// Every value of a Motor, Gearhead, Encoder, Amplifier, Cable, Bearing or Material, in the order of its
+/// definition.
 template <class Part>
 std::vector<PartValue> part_values(const Part& part);
 

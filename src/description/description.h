@@ -207,7 +207,33 @@ struct DirectDriveDescription {
   bool operator==(const DirectDriveDescription&) const = default;
 };
 
-using TransmissionDescription = std::variant<DirectDriveDescription, CapstanDescription>;
+/// A cable, belt or gear of which no more is known than how it turns motor into joint.
+struct RatioDescription {
+  double ratio = 0.0;            ///< turns of the motor per turn of the joint i
+  double efficiency = 1.0;       ///< share of the motor's torque that reaches the joint eta
+  double stiffness = kNotGiven;  ///< felt at the joint [N m/rad]
+  double backlash = kNotGiven;   ///< felt at the joint [rad]
+  double inertia = 0.0;          ///< of its wheels, felt at the joint [kg m^2]
+  std::string source;
+  Sources sources = {};
+
+  bool operator==(const RatioDescription& other) const;  ///< values not given are equal
+};
+
+/// A gearhead of the catalogue, and what may follow between it and the joint.
+struct GearheadDescription {
+  Gearhead gearhead;
+  double further_ratio = 1.0;       ///< turns of the gearhead's output per turn of the joint
+  double further_efficiency = 1.0;  ///< of what lies between
+  double stiffness = kNotGiven;     ///< felt at the joint [N m/rad]
+  std::string source;
+  Sources sources = {};
+
+  bool operator==(const GearheadDescription& other) const;  ///< values not given are equal
+};
+
+using TransmissionDescription =
+    std::variant<DirectDriveDescription, CapstanDescription, RatioDescription, GearheadDescription>;
 
 /// A leaf spring that keeps the cable preloaded (Neal 2015, section 4.5).
 struct FlexureDescription {

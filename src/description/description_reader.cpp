@@ -177,27 +177,49 @@ BodyDescription read_body(TableReader& table) {
 
 // --------------------------------------------------------------------------------------------------- drives
 
-enum class TransmissionType { direct, capstan };
+enum class TransmissionType { direct, capstan, ratio, gearhead };
 
 TransmissionDescription read_transmission(TableReader& drive, const Catalogue& catalogue,
                                           const std::optional<Interval>& joint_range) {
   std::optional<TableReader> table =
       drive.table("transmission", Need::optional, "write transmission = { type = \"capstan\", ... }");
   if (!table) return DirectDriveDescription{};
-  const auto type = table->choice<TransmissionType>(
-      "type", {{"direct", TransmissionType::direct}, {"capstan", TransmissionType::capstan}}, Need::required);
+  const auto type = table->choice<TransmissionType>("type",
+                                                    {{"direct", TransmissionType::direct},
+                                                     {"capstan", TransmissionType::capstan},
+                                                     {"ratio", TransmissionType::ratio},
+                                                     {"gearhead", TransmissionType::gearhead}},
+                                                    Need::required);
   if (!type) return DirectDriveDescription{};
-  if (*type == TransmissionType::direct) {
+  const auto finished = [&table](auto transmission) -> TransmissionDescription {
+    table->read_sources(transmission.source, transmission.sources, Need::optional);
     table->finish();
-    return DirectDriveDescription{};
+    return transmission;
+  };
+  switch (*type) {
+    case TransmissionType::direct:
+      break;
+    case TransmissionType::capstan: {
+      CapstanDescription capstan;
+      if (joint_range) capstan.mid_angle = joint_range->middle();
+      table->read(capstan);
+      capstan.cable = read_part<Cable>(*table, "cable", catalogue);
+      return finished(std::move(capstan));
+    }
+    case TransmissionType::ratio: {
+      RatioDescription ratio;
+      table->read(ratio);
+      return finished(std::move(ratio));
+    }
+    case TransmissionType::gearhead: {
+      GearheadDescription gear;
+      gear.gearhead = read_part<Gearhead>(*table, "gearhead", catalogue);
+      table->read(gear);
+      return finished(std::move(gear));
+    }
   }
-  CapstanDescription capstan;
-  if (joint_range) capstan.mid_angle = joint_range->middle();
-  table->read(capstan);
-  capstan.cable = read_part<Cable>(*table, "cable", catalogue);
-  table->read_sources(capstan.source, capstan.sources, Need::optional);
   table->finish();
-  return capstan;
+  return DirectDriveDescription{};
 }
 
 std::optional<FlexureDescription> read_preloader(TableReader& drive, const Catalogue& catalogue) {

@@ -141,4 +141,14 @@ std::vector<int> driven_joints(const MechanismDescription& mechanism, const Driv
   return indices;
 }
 
+std::string_view transmission_type(const TransmissionDescription& transmission) {
+  struct Type {
+    std::string_view operator()(const DirectDriveDescription&) const { return "direct"; }
+    std::string_view operator()(const CapstanDescription&) const { return "capstan"; }
+    std::string_view operator()(const RatioDescription&) const { return "ratio"; }
+    std::string_view operator()(const GearheadDescription&) const { return "gearhead"; }
+  };
+  return std::visit(Type{}, transmission);
+}
+
 }  // namespace zwidth

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "zwidth/description/description.h"
@@ -33,6 +34,9 @@ int active_joint_index(const MechanismDescription& mechanism, const std::string&
 
 /// Whether an active joint is moved by the hand alone.
 bool is_free_joint(const MechanismDescription& mechanism, int active);
+
+/// A transmission's type as device files write it: "direct", "capstan", "ratio" or "gearhead".
+std::string_view transmission_type(const TransmissionDescription& transmission);
 
 /// Indices in `active_joint_names` of the joints that a drive moves: all but the free ones if it names none.
 /// REQUIRES: the drive names active joints only, as `validate` sees to.

@@ -21,11 +21,7 @@ double value_of(const auto& owner, const auto& field) {
 
 template <class Part>
 bool equal(const Part& a, const Part& b) {
-  const auto same = [&](const Field<Part>& field) {
-    const double x = value_of(a, field), y = value_of(b, field);
-    return x == y || (!given(x) && !given(y));
-  };
-  return a.info == b.info && std::ranges::all_of(fields<Part>(), same);
+  return a.info == b.info && same_fields(a, b);
 }
 
 template <class Part>
@@ -38,6 +34,9 @@ std::vector<std::string> part_names(const Catalogue& catalogue) {
 }  // namespace
 
 bool Motor::operator==(const Motor& other) const {
+  return equal(*this, other);
+}
+bool Gearhead::operator==(const Gearhead& other) const {
   return equal(*this, other);
 }
 bool Encoder::operator==(const Encoder& other) const {
@@ -59,6 +58,10 @@ bool Material::operator==(const Material& other) const {
 template <>
 std::string_view part_kind<Motor>() {
   return "motor";
+}
+template <>
+std::string_view part_kind<Gearhead>() {
+  return "gearhead";
 }
 template <>
 std::string_view part_kind<Encoder>() {
@@ -136,6 +139,7 @@ Part read_part(TableReader& table, std::string_view key, const Catalogue& catalo
   template void read_part_values<Part>(TableReader&, Part&, bool, Need); \
   template Part read_part<Part>(TableReader&, std::string_view, const Catalogue&);
 ZWIDTH_INSTANTIATE(Motor)
+ZWIDTH_INSTANTIATE(Gearhead)
 ZWIDTH_INSTANTIATE(Encoder)
 ZWIDTH_INSTANTIATE(Amplifier)
 ZWIDTH_INSTANTIATE(Cable)

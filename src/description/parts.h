@@ -50,8 +50,35 @@ struct Motor {
   double radial_load_distance = kNotGiven;  ///< [m]
   double max_axial_load = kNotGiven;        ///< dynamic [N]
   double shaft_diameter = kNotGiven;        ///< [m]
+  double max_speed = kNotGiven;             ///< that the bearings and the commutation permit [rad/s]
+  // What a data sheet repeats; `motor_consistency` compares it with what follows from the values above.
+  double speed_torque_gradient = kNotGiven;     ///< loss of speed per torque [rad/s/(N m)]
+  double mechanical_time_constant = kNotGiven;  ///< [s]
+  double max_efficiency = kNotGiven;            ///< [-]
+  double starting_current = kNotGiven;          ///< at standstill and nominal voltage [A]
+  double max_output_power = kNotGiven;          ///< at nominal voltage [W]
+  double rated_power = kNotGiven;               ///< by which the type is called [W]
 
   bool operator==(const Motor& other) const;  ///< values not given are equal
+};
+
+/// A gear train between motor and joint.
+struct Gearhead {
+  PartInfo info;
+  double reduction_numerator = 0.0;    ///< of the exact reduction, turns of the motor per turn of the output
+  double reduction_denominator = 1.0;  ///< 1 where the reduction is given as a decimal number
+  int stages = 0;
+  double continuous_torque = 0.0;      ///< that the output may carry for ever [N m]
+  double intermittent_torque = 0.0;    ///< that it may carry for a short time [N m]
+  double max_efficiency = 1.0;         ///< [-]
+  double backlash = kNotGiven;         ///< of the output, without load, on average [rad]
+  double inertia = 0.0;                ///< felt at the motor [kg m^2]; 0 when not given
+  double mass = kNotGiven;             ///< [kg]
+  double length = kNotGiven;           ///< [m]
+  double max_motor_shaft = kNotGiven;  ///< largest diameter of the motor's shaft [m]
+  double max_input_speed = kNotGiven;  ///< [rad/s]
+
+  bool operator==(const Gearhead& other) const;  ///< values not given are equal
 };
 
 struct Encoder {

@@ -82,6 +82,47 @@ std::span<const Field<Motor>> fields<Motor>() {
        "largest axial force on the turning shaft", "\"5.5 N\""},
       {"shaft_diameter", &Motor::shaft_diameter, length, kSmallLength, optional, "diameter of the shaft",
        "\"5 mm\""},
+      {"max_speed", &Motor::max_speed, angular_speed, kPositive, optional, "highest permissible speed",
+       "\"12000 rpm\""},
+      {"speed_torque_gradient", &Motor::speed_torque_gradient, speed_torque_gradient, kPositive, optional,
+       "loss of speed per torque, as the data sheet repeats it", "\"4.61 rpm/(mN m)\""},
+      {"mechanical_time_constant", &Motor::mechanical_time_constant, time, kPositive, optional,
+       "mechanical time constant, as the data sheet repeats it", "\"4.9 ms\""},
+      {"max_efficiency", &Motor::max_efficiency, number, kShare, optional,
+       "highest efficiency, as the data sheet repeats it", "0.85"},
+      {"starting_current", &Motor::starting_current, current, kPositive, optional,
+       "current at standstill and nominal voltage", "\"3.55 A\""},
+      {"max_output_power", &Motor::max_output_power, Dimension::power, kPositive, optional,
+       "highest power at nominal voltage", "\"10.2 W\""},
+      {"rated_power", &Motor::rated_power, Dimension::power, kPositive, optional,
+       "power that the type is called by", "\"120 W\""},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<Gearhead>> fields<Gearhead>() {
+  static const Field<Gearhead> list[] = {
+      {"reduction_numerator", &Gearhead::reduction_numerator, number, kPositive, required,
+       "numerator of the exact reduction", "3249"},
+      {"reduction_denominator", &Gearhead::reduction_denominator, number, kPositive, optional,
+       "denominator of the exact reduction", "169"},
+      {"stages", &Gearhead::stages, number, kAtLeastOne, required, "number of stages", "2"},
+      {"continuous_torque", &Gearhead::continuous_torque, torque, kPositive, required,
+       "torque that the output may carry for ever", "\"0.15 N m\""},
+      {"intermittent_torque", &Gearhead::intermittent_torque, torque, kPositive, required,
+       "torque that the output may carry for a short time", "\"0.225 N m\""},
+      {"max_efficiency", &Gearhead::max_efficiency, number, kShare, required, "highest efficiency", "0.81"},
+      {"backlash", &Gearhead::backlash, angle, kNotNegative, optional, "backlash of the output without load",
+       "\"0.8 deg\""},
+      {"inertia", &Gearhead::inertia, inertia, kNotNegative, optional, "moment of inertia felt at the motor",
+       "\"0.05 g cm^2\""},
+      {"mass", &Gearhead::mass, mass, kPositive, optional, "mass", "\"23 g\""},
+      {"length", &Gearhead::length, length, kSmallLength, optional, "length", "\"19.1 mm\""},
+      {"max_motor_shaft", &Gearhead::max_motor_shaft, length, kSmallLength, optional,
+       "largest diameter of the motor's shaft", "\"2 mm\""},
+      {"max_input_speed", &Gearhead::max_input_speed, angular_speed, kPositive, optional,
+       "highest speed of the motor", "\"8000 rpm\""},
   };
   return list;
 }
@@ -281,6 +322,36 @@ std::span<const Field<CapstanDescription>> fields<CapstanDescription>() {
        "\"24 deg\""},
       {"cable_stiffness_factor", &Capstan::cable_stiffness_factor, number, kShare, optional,
        "share of the metal's stiffness that the rope really has", "0.225"},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<RatioDescription>> fields<RatioDescription>() {
+  using Ratio = RatioDescription;
+  static const Field<Ratio> list[] = {
+      {"ratio", &Ratio::ratio, number, kPositive, required, "turns of the motor per turn of the joint", "10"},
+      {"efficiency", &Ratio::efficiency, number, kShare, optional,
+       "share of the motor's torque that reaches the joint", "0.95"},
+      {"stiffness", &Ratio::stiffness, angular_stiffness, kPositive, optional, "stiffness felt at the joint",
+       "\"500 N m/rad\""},
+      {"backlash", &Ratio::backlash, angle, kNotNegative, optional, "backlash felt at the joint", "0"},
+      {"inertia", &Ratio::inertia, inertia, kNotNegative, optional,
+       "moment of inertia of its wheels, felt at the joint", "\"2e-4 kg m^2\""},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<GearheadDescription>> fields<GearheadDescription>() {
+  using Gear = GearheadDescription;
+  static const Field<Gear> list[] = {
+      {"further_ratio", &Gear::further_ratio, number, kPositive, optional,
+       "turns of the gearhead's output per turn of the joint", "1"},
+      {"further_efficiency", &Gear::further_efficiency, number, kShare, optional,
+       "efficiency of what lies between gearhead and joint", "1"},
+      {"stiffness", &Gear::stiffness, angular_stiffness, kPositive, optional, "stiffness felt at the joint",
+       "\"40 N m/rad\""},
   };
   return list;
 }

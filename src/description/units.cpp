@@ -47,6 +47,7 @@ constexpr DimensionEntry kDimensions[] = {
     {Dimension::density, "a density", "kg/m^3", false, "kg/m^3 or g/cm^3", {"kg/m^3", "g/cm^3"}},
     {Dimension::force, "a force", "N", false, "N", {"N", "mN", "kN"}},
     {Dimension::torque, "a torque", "N m", false, "N m or mN m", {"N m", "mN m"}},
+    {Dimension::power, "a power", "W", false, "W or mW", {"W", "mW"}},
     {Dimension::pressure, "a pressure", "Pa", false, "Pa, MPa or GPa", {"GPa", "MPa", "Pa"}},
     {Dimension::stiffness, "a stiffness", "N/m", false, "N/m or N/mm", {"N/m", "N/mm", "N/um"}},
     {Dimension::damping, "a damping", "N s/m", false, "N s/m", {"N s/m"}},
@@ -60,6 +61,12 @@ constexpr DimensionEntry kDimensions[] = {
     {Dimension::speed_constant, "a speed constant", "rad/s/V", true, "rad/s/V or rpm/V", {"rpm/V", "rad/s/V"}},
     {Dimension::temperature, "a temperature", "K", false, "K or degC", {"K"}},
     {Dimension::thermal_resistance, "a thermal resistance", "K/W", false, "K/W", {"K/W"}},
+    {Dimension::speed_torque_gradient,
+     "a loss of speed per torque",
+     "rad/s/(N m)",
+     true,
+     "rad/s/(N m) or rpm/(mN m)",
+     {"rpm/(mN m)", "rad/s/(N m)"}},
 };
 
 const DimensionEntry& entry(Dimension dimension) {

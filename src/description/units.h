@@ -12,35 +12,37 @@ namespace zwidth {
 
 /// The kind of a quantity; each has one SI unit, in which all numbers inside zwidth are.
 enum class Dimension {
-  number,                ///< 1
-  length,                ///< m
-  angle,                 ///< rad
-  area,                  ///< m^2
-  volume,                ///< m^3
-  time,                  ///< s
-  frequency,             ///< Hz
-  speed,                 ///< m/s
-  angular_speed,         ///< rad/s
-  acceleration,          ///< m/s^2
-  angular_acceleration,  ///< rad/s^2
-  mass,                  ///< kg
-  inertia,               ///< kg m^2
-  density,               ///< kg/m^3
-  force,                 ///< N
-  torque,                ///< N m
-  pressure,              ///< Pa
-  stiffness,             ///< N/m
-  damping,               ///< N s/m
-  angular_stiffness,     ///< N m/rad
-  angular_damping,       ///< N m s/rad
-  voltage,               ///< V
-  current,               ///< A
-  resistance,            ///< ohm
-  inductance,            ///< H
-  torque_constant,       ///< N m/A
-  speed_constant,        ///< rad/s/V
-  temperature,           ///< K
-  thermal_resistance,    ///< K/W
+  number,                 ///< 1
+  length,                 ///< m
+  angle,                  ///< rad
+  area,                   ///< m^2
+  volume,                 ///< m^3
+  time,                   ///< s
+  frequency,              ///< Hz
+  speed,                  ///< m/s
+  angular_speed,          ///< rad/s
+  acceleration,           ///< m/s^2
+  angular_acceleration,   ///< rad/s^2
+  mass,                   ///< kg
+  inertia,                ///< kg m^2
+  density,                ///< kg/m^3
+  force,                  ///< N
+  torque,                 ///< N m
+  power,                  ///< W
+  pressure,               ///< Pa
+  stiffness,              ///< N/m
+  damping,                ///< N s/m
+  angular_stiffness,      ///< N m/rad
+  angular_damping,        ///< N m s/rad
+  voltage,                ///< V
+  current,                ///< A
+  resistance,             ///< ohm
+  inductance,             ///< H
+  torque_constant,        ///< N m/A
+  speed_constant,         ///< rad/s/V
+  temperature,            ///< K
+  thermal_resistance,     ///< K/W
+  speed_torque_gradient,  ///< rad/s/(N m)
 };
 
 std::string_view dimension_name(Dimension dimension);  ///< with its article: "a length", "an angle"

@@ -336,14 +336,30 @@ class Validator {
       wrong(path + ".supply_voltage", format_quantity(volts, Dimension::voltage),
             fmt::format("is less than the amplifier needs, {} V", amplifier.min_supply_voltage), "raise it");
     }
-    if (const auto* capstan = std::get_if<CapstanDescription>(&drive.transmission)) {
-      check(*capstan, path + ".transmission");
-    }
+    std::visit([&](const auto& transmission) { check(transmission, path + ".transmission"); },
+               drive.transmission);
     if (drive.preloader) {
       check_fields(*drive.preloader, path + ".preloader");
       check_fields(drive.preloader->material, path + ".preloader.material");
     }
     if (drive.output) check_fields(*drive.output, path + ".output");
+  }
+
+  void check(const DirectDriveDescription&, const std::string&) {}
+
+  void check(const RatioDescription& ratio, const std::string& path) { check_fields(ratio, path); }
+
+  void check(const GearheadDescription& gear, const std::string& path) {
+    check_fields(gear, path);
+    const Gearhead& gearhead = gear.gearhead;
+    const std::size_t before = problems_.size();
+    check_fields(gearhead, path + ".gearhead");
+    if (problems_.size() == before && gearhead.intermittent_torque < gearhead.continuous_torque) {
+      wrong(path + ".gearhead.intermittent_torque",
+            format_quantity(gearhead.intermittent_torque, Dimension::torque),
+            "must not be less than continuous_torque",
+            "what may be carried for ever may be carried for a short time");
+    }
   }
 
   void check(const CapstanDescription& capstan, const std::string& path) {

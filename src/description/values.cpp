@@ -88,9 +88,13 @@ std::vector<DescribedValue> described_values(const Description& description) {
     const DriveDescription& drive = description.drives[i];
     const std::string table = join_path("drive", i);
     collector.add_fields(table, drive, {});
-    if (const auto* capstan = std::get_if<CapstanDescription>(&drive.transmission)) {
-      collector.add_fields(join_path(table, "transmission"), *capstan, drive.source);
-    }
+    std::visit(
+        [&](const auto& transmission) {
+          using Transmission = std::remove_cvref_t<decltype(transmission)>;
+          if constexpr (!std::is_same_v<Transmission, DirectDriveDescription>)
+            collector.add_fields(join_path(table, "transmission"), transmission, drive.source);
+        },
+        drive.transmission);
     if (drive.preloader) collector.add_fields(join_path(table, "preloader"), *drive.preloader, drive.source);
     if (drive.output) collector.add_fields(join_path(table, "output"), *drive.output, drive.source);
   }

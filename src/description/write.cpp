@@ -293,6 +293,20 @@ class Writer {
     table("[drive.transmission]", lines);
   }
 
+  void write_transmission(const RatioDescription& ratio) {
+    Lines lines{{"type", text("ratio")}};
+    add_fields(lines, ratio, RatioDescription{});
+    add_source(lines, ratio.source, ratio.sources);
+    table("[drive.transmission]", lines);
+  }
+
+  void write_transmission(const GearheadDescription& gear) {
+    Lines lines{{"type", text("gearhead")}, {"gearhead", part(gear.gearhead, catalogue_)}};
+    add_fields(lines, gear, GearheadDescription{});
+    add_source(lines, gear.source, gear.sources);
+    table("[drive.transmission]", lines);
+  }
+
   std::ostream& out_;
   const Catalogue& catalogue_;
   bool first_ = true;

@@ -130,5 +130,43 @@ TEST(Thermal, OverheatsWhenItSays) {
   EXPECT_EQ(model.time_to_overheat(1.0, 430.0), 0.0);
 }
 
+TEST(Motor, DataSheetsRepeatThemselves) {  // Baser 2006, appendix A: EC-max 40, 120 W
+  Motor motor;
+  motor.supply_voltage = 48.0;
+  motor.resistance = 0.999;
+  motor.torque_constant = 0.0455;
+  motor.rotor_inertia = 101e-7;
+  motor.no_load_current = 0.306;
+  motor.stall_torque = 2.190;
+  motor.speed_constant = 210.0 * std::numbers::pi / 30.0;
+  motor.no_load_speed = 10000.0 * std::numbers::pi / 30.0;
+  motor.speed_torque_gradient = 4.61e3 * std::numbers::pi / 30.0;
+  motor.mechanical_time_constant = 4.9e-3;
+  motor.max_efficiency = 0.85;
+  const std::vector<MotorConsistency> checks = motor_consistency(motor);
+  ASSERT_EQ(checks.size(), 6u);
+  for (const MotorConsistency& check : checks) EXPECT_LT(std::abs(check.difference()), 0.02) << check.key;
+  motor.max_output_power = 572.0;  // a quarter of stall torque times no-load speed
+  EXPECT_LT(std::abs(motor_consistency(motor).back().difference()), 0.01);
+  motor.no_load_speed = 1000.0 * std::numbers::pi / 30.0;  // a misprint
+  bool found = false;
+  for (const MotorConsistency& check : motor_consistency(motor)) {
+    if (check.key == "no_load_speed") found = std::abs(check.difference()) > 1.0;
+  }
+  EXPECT_TRUE(found);
+}
+
+TEST(Motor, EfficiencyIsTheBestOverAllLoads) {
+  const double kt = 0.0233, R = 1.25, U = 24.0, I0 = 0.21;
+  double best = 0.0;
+  for (double current = I0; current < U / R; current += 1e-3) {
+    const double speed = (U - R * current) / kt;
+    best = std::max(best, kt * (current - I0) * speed / (U * current));
+  }
+  EXPECT_NEAR(max_efficiency(R, U, I0), best, 1e-6);
+  EXPECT_EQ(max_efficiency(R, 0.2, I0), 0.0);
+  EXPECT_THROW(max_efficiency(R, 0.0, I0), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace zwidth

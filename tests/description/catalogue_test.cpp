@@ -26,6 +26,7 @@ void expect_every_value_has_a_source() {
 
 TEST(Catalogue, EveryPartHasASource) {
   expect_every_value_has_a_source<Motor>();
+  expect_every_value_has_a_source<Gearhead>();
   expect_every_value_has_a_source<Encoder>();
   expect_every_value_has_a_source<Amplifier>();
   expect_every_value_has_a_source<Cable>();
@@ -52,6 +53,12 @@ TEST(Catalogue, MotorsAgreeWithThemselves) {
 }
 
 TEST(Catalogue, OtherPartsAgreeWithThemselves) {
+  for (const Gearhead& gearhead : catalogue().all<Gearhead>()) {
+    EXPECT_LE(gearhead.continuous_torque, gearhead.intermittent_torque) << gearhead.info.name;
+    // Every stage of these loses a tenth.
+    EXPECT_NEAR(gearhead.max_efficiency, std::pow(0.9, gearhead.stages), 1e-9) << gearhead.info.name;
+    EXPECT_GE(gearhead.reduction_numerator, gearhead.reduction_denominator) << gearhead.info.name;
+  }
   for (const Amplifier& amplifier : catalogue().all<Amplifier>()) {
     EXPECT_LE(amplifier.continuous_current, amplifier.max_current) << amplifier.info.name;
     EXPECT_LT(amplifier.min_supply_voltage, amplifier.max_supply_voltage) << amplifier.info.name;
@@ -120,7 +127,7 @@ TEST(Catalogue, MistakesInPartsFilesAllComeAtOnce) {
   const fs::path directory = fs::temp_directory_path() / "zwidth-catalogue-test";
   fs::remove_all(directory);
   fs::create_directories(directory / "parts");
-  for (const char* file : {"motors", "encoders", "amplifiers", "bearings"}) {
+  for (const char* file : {"motors", "gearheads", "encoders", "amplifiers", "bearings"}) {
     fs::copy(catalogue().directory() / "parts" / (std::string(file) + ".toml"), directory / "parts");
   }
   std::ofstream(directory / "parts" / "cables.toml") << "[\"Bad Name\"]\nstrands = 2.5\n\"7x7\" = 1\n";

@@ -41,6 +41,8 @@ std::string example_file() {
   for (const TableReference& table : file_reference()) {
     if (table.name == "motor") break;
     if (kFamilies.contains(table.name)) continue;
+    if (table.name == "ratio" || table.name == "gearhead transmission")
+      continue;  // a drive has one transmission
     std::string header = "[[" + table.name + "]]";
     if (table.name == "device") header = "[device]";
     if (table.name == "legs") header = "[mechanism]";
@@ -70,6 +72,21 @@ TEST(Reference, TheExamplesOfEachFamilyRead) {
       if (!key.example.empty()) text += key.key + " = " + key.example + "\n";
     }
     EXPECT_TRUE(problems_of(text).empty()) << text;
+  }
+}
+
+TEST(Reference, TheExamplesOfTheOtherTransmissionsRead) {
+  for (const TableReference& table : file_reference()) {
+    if (table.name != "ratio" && table.name != "gearhead transmission") continue;
+    std::string text = example_file();
+    const std::string header = "[drive.transmission]\n";
+    const std::size_t from = text.find(header) + header.size(), to = text.find("[drive.preloader]");
+    std::string keys;
+    for (const KeyReference& key : table.keys) {
+      if (!key.example.empty()) keys += key.key + " = " + key.example + "\n";
+    }
+    text.replace(from, to - from, keys);
+    for (const Problem& problem : problems_of(text)) ADD_FAILURE() << to_string(problem) << "\n" << text;
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -44,11 +45,27 @@ struct Field {
   std::string_view example;  ///< as TOML
 };
 
-/// The fields of Motor, Encoder, Amplifier, Cable, Bearing, Material, DeltaDescription, FiveBarDescription,
-/// RCubeDescription, SerialJointDescription, CapstanDescription,
-/// FlexureDescription, DriveOutputDescription and DriveDescription.
+/// The fields of Motor, Gearhead, Encoder, Amplifier, Cable, Bearing, Material, DeltaDescription,
+/// FiveBarDescription, RCubeDescription, SerialJointDescription, CapstanDescription, RatioDescription,
+/// GearheadDescription, FlexureDescription, DriveOutputDescription and DriveDescription.
 template <class Owner>
 std::span<const Field<Owner>> fields();
+
+/// Whether two structs agree in all their fields; numbers that are not given are equal.
+template <class Owner>
+bool same_fields(const Owner& a, const Owner& b) {
+  const auto same = [&](const Field<Owner>& field) {
+    return std::visit(
+        [&](auto member) {
+          if constexpr (std::is_same_v<decltype(member), double Owner::*>) {
+            if (std::isnan(a.*member) && std::isnan(b.*member)) return true;
+          }
+          return a.*member == b.*member;
+        },
+        field.member);
+  };
+  return std::all_of(fields<Owner>().begin(), fields<Owner>().end(), same);
+}
 
 /// "must be positive", "must be from 0 to 10 m".
 std::string bounds_rule(const Bounds& bounds, Dimension dimension);

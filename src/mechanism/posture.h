@@ -66,7 +66,9 @@ struct Solution {
   int iterations = 0;  ///< Newton steps; 0 for a closed form
   double residual =
       -1.0;  ///< closure error left where solving stopped [m, rad x characteristic length]; -1 if none
-  double conditioning = 0.0;       ///< reciprocal condition of the closure at the answer, 0 singular .. 1
+  double conditioning = 0.0;    ///< reciprocal condition of the closure at the answer, 0 singular .. 1
+  bool other_assembly = false;  ///< the joints, driven to these values, would take the tool elsewhere: the
+                                ///< posture is of another assembly mode than the mechanism's own
   std::optional<Posture> posture;  ///< present unless unreachable or degenerate
 
   explicit operator bool() const { return posture.has_value(); }
@@ -78,13 +80,14 @@ struct Solution {
 Solution solve_forward(const Mechanism& mechanism, const ActiveVector& active,
                        const SolveOptions& options = {});
 
-/// The posture that brings the tool to a pose, nearest to the start (closed form: knees outwards).
-/// A mechanism that only translates ignores the rotation. REQUIRES: all finite.
+/// The posture that brings the tool to a pose, nearest to the start (closed form: the device's own branch).
+/// A mechanism that only translates ignores the rotation. A pose that only another assembly mode reaches is
+/// unreachable; with a start the posture follows that, and its mode is not looked at. REQUIRES: all finite.
 Solution solve_inverse(const Mechanism& mechanism, const Pose& tool, const SolveOptions& options = {});
 
-/// Every posture that brings the tool to a pose, one per combination of the legs' roots, those within the joint
-/// ranges first. Empty if unreachable. The general solver searches from seeded starts, so it may miss a root of
-/// a leg with more than three joints. Allocates.
+/// Every posture that brings the tool to a pose, one per combination of the legs' roots, other assembly modes
+/// included; first those of the mechanism's own within the joint ranges. Empty if unreachable. The general
+/// solver searches from seeded starts, so it may miss a root of a leg with more than three joints. Allocates.
 std::vector<Solution> solve_inverse_all(const Mechanism& mechanism, const Pose& tool,
                                         const SolveOptions& options = {});
 

@@ -471,6 +471,28 @@ Solution closed_inverse(const Mechanism& mechanism, const Pose& tool, const Solv
   return closed_solution(mechanism, closed);
 }
 
+// Whether the mechanism, driven to the posture's active joints, stands elsewhere. Where it cannot be driven
+// there nothing is known against the posture.
+bool stands_elsewhere(const Posture& posture, const SolveOptions& options) {
+  constexpr double kSame =
+      1e-6;  // of the characteristic length, or rad: a root that cancels loses half the digits
+  const Mechanism& mechanism = posture.mechanism();
+  const Solution driven = solve_forward(mechanism, posture.active(), {.closed_form = options.closed_form});
+  if (!driven) return false;
+  const Pose &here = posture.tool(), &there = driven.posture->tool();
+  return (there.position - here.position).norm() > kSame * mechanism.characteristic_length() ||
+         internal::rotation_vector(there.rotation * here.rotation.transpose()).norm() > kSame;
+}
+
+// Of the mechanism's own assembly mode, or none.
+Solution own_assembly(Solution solution, const SolveOptions& options) {
+  if (!solution || !stands_elsewhere(*solution.posture, options)) return solution;
+  solution.status = SolveStatus::unreachable;
+  solution.other_assembly = true;
+  solution.posture.reset();
+  return solution;
+}
+
 }  // namespace
 
 ActiveVector Posture::active() const {
@@ -493,9 +515,10 @@ Solution solve_inverse(const Mechanism& mechanism, const Pose& tool, const Solve
   if (!mechanism.tool_turns()) wanted.rotation.setIdentity();
   if (options.closed_form && mechanism.closed_form() != nullptr &&
       mechanism.closed_form()->branch_count() > 0) {
-    return closed_inverse(mechanism, wanted, options, 0);
+    return own_assembly(closed_inverse(mechanism, wanted, options, 0), options);
   }
-  return inverse_general(mechanism, wanted, options);
+  Solution solution = inverse_general(mechanism, wanted, options);
+  return options.start == nullptr ? own_assembly(std::move(solution), options) : solution;
 }
 
 std::vector<Solution> solve_inverse_all(const Mechanism& mechanism, const Pose& tool,
@@ -537,8 +560,13 @@ std::vector<Solution> solve_inverse_all(const Mechanism& mechanism, const Pose& 
       solutions.push_back(std::move(solution));
     }
   }
-  std::stable_partition(solutions.begin(), solutions.end(),
-                        [](const Solution& solution) { return solution.status != SolveStatus::joint_limit; });
+  for (Solution& solution : solutions) solution.other_assembly = stands_elsewhere(*solution.posture, options);
+  std::stable_sort(solutions.begin(), solutions.end(), [](const Solution& a, const Solution& b) {
+    const auto rank = [](const Solution& s) {
+      return (s.other_assembly ? 2 : 0) + (s.status == SolveStatus::joint_limit ? 1 : 0);
+    };
+    return rank(a) < rank(b);
+  });
   return solutions;
 }
 

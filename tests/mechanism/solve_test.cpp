@@ -3,6 +3,7 @@
 #include "support/deltas.h"
 #include "support/storm.h"
 
+#include "zwidth/mechanism/batch_delta.h"
 #include "zwidth/mechanism/jacobian.h"
 #include "zwidth/mechanism/posture.h"
 
@@ -134,6 +135,71 @@ TEST(SolveInverse, BothSolversCallTheSamePointsUnreachable) {
   }
   EXPECT_GT(in, 300);
   EXPECT_GT(out, 300);
+}
+
+TEST(SolveInverse, ReachesThePointsOfTheWorkspaceAndNoOthers) {
+  // Windows so wide that legs reach points which only the other assembly mode would take.
+  std::mt19937_64 random(17);
+  DeltaDescription description = test::published_delta();
+  description.joint_range = {-2.8, 2.8};
+  const Mechanism delta(test::with_bodies(description));
+  const DeltaBatch batch(*delta.delta(), description.joint_range);
+  int in = 0, other = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const double x = test::uniform(random, -0.2, 0.2), y = test::uniform(random, -0.2, 0.2),
+                 z = test::uniform(random, -0.25, 0.25);
+    std::uint8_t inside = 0;
+    batch.inside({&x, 1}, {&y, 1}, {&z, 1}, {&inside, 1});
+    const Solution solution = solve_inverse(delta, {.position = {x, y, z}});
+    const bool reached = solution.status == SolveStatus::reached || solution.status == SolveStatus::degraded;
+    if (solution && solution.conditioning < 1e-6) continue;
+    EXPECT_EQ(reached, inside != 0) << x << ' ' << y << ' ' << z;
+    in += reached ? 1 : 0;
+    if (!solution.other_assembly) continue;
+    ++other;
+    EXPECT_EQ(solution.status, SolveStatus::unreachable);
+    EXPECT_FALSE(solution);
+    EXPECT_EQ(delta_inverse(*delta.delta(), {x, y, z}, {-4.0, 4.0}).status, SolveStatus::reached)
+        << "the legs reach it all the same";
+  }
+  EXPECT_GT(in, 1000);
+  EXPECT_GT(other, 300);
+}
+
+TEST(SolveInverse, GeneralSolverKeepsToItsAssemblyModeToo) {
+  std::mt19937_64 random(18);
+  DeltaDescription description = test::published_delta();
+  description.joint_range = {-1.2, 2.0};
+  const Mechanism delta(test::with_bodies(description));
+  int other = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const Pose tool{.position = {test::uniform(random, -0.1, 0.1), test::uniform(random, -0.1, 0.1),
+                                 test::uniform(random, -0.15, 0.0)}};
+    const Solution closed = solve_inverse(delta, tool);
+    if (!closed.other_assembly) continue;
+    ++other;
+    EXPECT_EQ(solve_inverse(delta, tool, kGeneral).status, SolveStatus::unreachable)
+        << tool.position.transpose();
+  }
+  EXPECT_GT(other, 20);
+}
+
+TEST(SolveInverseAll, MarksTheOtherAssemblyModeByWhereTheJointsLead) {
+  DeltaDescription description = test::published_delta();
+  description.joint_range = {-2.8, 2.8};
+  const Mechanism delta(test::with_bodies(description));
+  for (const double z : {-0.1, 0.1}) {
+    const std::vector<Solution> all = solve_inverse_all(delta, {.position = {0.01, -0.02, z}});
+    ASSERT_EQ(all.size(), 8u);
+    bool others = false;
+    for (const Solution& one : all) {
+      const Vector3 there = delta_forward(*delta.delta(), Vector3(one.posture->active())).position;
+      EXPECT_EQ((there - one.posture->tool().position).norm() > 1e-6, one.other_assembly);
+      EXPECT_FALSE(others && !one.other_assembly) << "the mechanism's own come first";
+      others = others || one.other_assembly;
+    }
+    EXPECT_EQ(all.front().other_assembly, z < 0.0);
+  }
 }
 
 TEST(SolveInverseAll, GeneralSolverFindsTheSameEightBranches) {

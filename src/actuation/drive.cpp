@@ -7,6 +7,7 @@
 
 #include "zwidth/actuation/amplifier.h"
 #include "zwidth/actuation/cable.h"
+#include "zwidth/actuation/drive_problems.h"
 #include "zwidth/actuation/encoder.h"
 #include "zwidth/actuation/gearhead.h"
 #include "zwidth/math/linear_system.h"
@@ -16,51 +17,17 @@ namespace {
 
 using std::numbers::pi;
 
-void require(const char* quantity, double value) {
-  if (!(value > 0.0) || !std::isfinite(value)) {
-    throw InvalidDrive(std::string(quantity) + " must be positive and finite, not " + std::to_string(value));
-  }
-}
-
-void require_share(const char* quantity, double value) {
-  require(quantity, value);
-  if (value > 1.0) {
-    throw InvalidDrive(std::string(quantity) + " must be at most 1, not " + std::to_string(value));
-  }
-}
-
-std::string millimetres(double metres) {
-  return std::to_string(1e3 * metres) + " mm";
-}
-
-Capstan make_capstan(const CapstanDescription& description, const Interval& joint_range) {
-  Capstan capstan = solve_capstan(capstan_dimensions(description, joint_range));
-  if (capstan.status == CapstanStatus::invalid_argument) {
-    std::string message = "capstan: " + std::string(capstan.reason) + " (input diameter " +
-                          millimetres(description.input_diameter) + ", lead " + millimetres(description.lead) +
-                          ", cable " + millimetres(description.cable.coated_diameter) + ", output diameter " +
-                          millimetres(description.output_diameter) + ", centre distance " +
-                          millimetres(description.centre_distance);
-    if (capstan.min_centre_distance > 0.0) {
-      message += ", which must be at least " + millimetres(capstan.min_centre_distance);
-    }
-    throw InvalidDrive(message + ")");
-  }
-  require("capstan: the preload", description.preload);
-  return capstan;
+const DriveDescription& checked(const DriveDescription& description) {
+  const std::vector<Problem> problems = drive_problems(description, "drive");
+  if (!problems.empty()) throw InvalidDrive(to_string(problems.front()));
+  return description;
 }
 
 CurrentLoop make_current_loop(const DriveDescription& description) {
-  require("the motor's resistance", description.motor.resistance);
-  require("the motor's inductance", description.motor.inductance);
-  require("the amplifier's proportional gain scale", description.amplifier.proportional_gain_scale);
-  require("the amplifier's integral gain scale", description.amplifier.integral_gain_scale);
   const CurrentGains gains = gains_from_registers(description.proportional_gain, description.integral_gain,
                                                   gain_scale(description.amplifier));
   const auto loop = CurrentLoop::make(description.motor.resistance, description.motor.inductance, gains);
-  if (!loop) {
-    throw InvalidDrive("the gains of the current loop must be finite");
-  }
+  if (!loop) throw InvalidDrive("drive: the gains of the current loop must be finite");
   return *loop;
 }
 
@@ -98,42 +65,21 @@ const char* to_string(Limiter limiter) {
 }
 
 Drive::Drive(const DriveDescription& description, const Interval& joint_range)
-    : description_(description),
+    : description_(checked(description)),
       joint_range_(joint_range),
       thermal_(thermal_model(description.motor)),
       current_loop_(make_current_loop(description)) {
-  require("the motor's torque constant", description.motor.torque_constant);
-  require("the motor's nominal torque", description.motor.nominal_torque);
-  require("the motor's speed constant", description.motor.speed_constant);
-  require("the encoder's pulses per turn", description.encoder.pulses_per_turn);
-  require("the supply voltage", description.supply_voltage);
-  require("the peak factor", description.peak_factor);
   if (const auto* capstan = std::get_if<CapstanDescription>(&description.transmission)) {
-    capstan_ = make_capstan(*capstan, joint_range);
+    capstan_ = solve_capstan(capstan_dimensions(*capstan, joint_range));
     ratio_ = capstan_->ratio;
   } else if (const auto* ratio = std::get_if<RatioDescription>(&description.transmission)) {
-    require("the transmission's ratio", ratio->ratio);
-    require_share("the transmission's efficiency", ratio->efficiency);
     ratio_ = ratio->ratio;
     efficiency_ = ratio->efficiency;
   } else if (const auto* gear = std::get_if<GearheadDescription>(&description.transmission)) {
-    require("the gearhead's reduction", gear->gearhead.reduction_numerator);
-    require("the denominator of the gearhead's reduction", gear->gearhead.reduction_denominator);
-    require("the gearhead's continuous torque", gear->gearhead.continuous_torque);
-    require("the gearhead's intermittent torque", gear->gearhead.intermittent_torque);
-    require_share("the gearhead's efficiency", gear->gearhead.max_efficiency);
-    require("the ratio behind the gearhead", gear->further_ratio);
-    require_share("the efficiency behind the gearhead", gear->further_efficiency);
     ratio_ = reduction(gear->gearhead) * gear->further_ratio;
     efficiency_ = gear->gearhead.max_efficiency * gear->further_efficiency;
   }
-  if (description.preloader) {
-    preloader_ = Flexure::make(*description.preloader);
-    if (!preloader_) {
-      throw InvalidDrive(
-          "the preloader's lengths, width, height and elastic modulus must be positive and finite");
-    }
-  }
+  if (description.preloader) preloader_ = Flexure::make(*description.preloader);
   current_per_torque_ = 1.0 / (description.motor.torque_constant * ratio_ * efficiency_);
   angle_per_count_ = zwidth::angular_resolution(counts_per_turn(description.encoder), ratio_);
 }

@@ -15,8 +15,7 @@
 
 namespace zwidth {
 
-/// The drive's numbers contradict each other (pulleys that overlap, a thread thinner than its groove, ...).
-/// The message names the quantities, their values and the rule.
+/// The drive cannot be built: `drive_problems` is not empty. The message is the first of them.
 class InvalidDrive : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
@@ -74,8 +73,8 @@ struct DriveFigure {
 /// (`current_for_torque`, `joint_angle`) neither throw nor allocate.
 class Drive {
  public:
-  /// `joint_range` [rad] is the range of the joint it moves. A cable that is not seated in its groove is a
-  /// failed margin, not an error; contradictory numbers throw InvalidDrive.
+  /// `joint_range` [rad] is the range of the joint it moves. Throws InvalidDrive where `drive_problems` finds
+  /// anything; margins that fail are no errors.
   Drive(const DriveDescription& description, const Interval& joint_range);
 
   /// The same for a design search: empty where the constructor would throw.

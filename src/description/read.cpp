@@ -9,12 +9,15 @@
 namespace zwidth {
 
 Description parse_description(std::string_view text, std::string_view file,
-                              const std::vector<std::string>& overrides, const Catalogue& catalogue) {
+                              const std::vector<std::string>& overrides, const Catalogue& catalogue,
+                              std::span<const DescriptionCheck> checks) {
   const bool blank = std::all_of(text.begin(), text.end(),
                                  [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; });
   if (blank) {
     throw DescriptionError(
         {{.file = std::string(file),
+          .line = 1,
+          .column = 1,
           .rule = "is empty",
           .advice = "start with [device], as in docs/device_file.md, or with `zwidth show delta`"}});
   }
@@ -25,14 +28,16 @@ Description parse_description(std::string_view text, std::string_view file,
   input.add_value_problems(value_problems(description));
   if (mechanism_read) input.add_value_problems(name_problems(description));
   input.throw_problems();
+  for (const DescriptionCheck check : checks) input.add_value_problems(check(description));
+  input.throw_problems();
   return description;
 }
 
 Description read_description(std::string_view device, const std::vector<std::string>& overrides,
-                             const Catalogue& catalogue) {
-  if (device == "-") return parse_description(read_text("-"), "<stdin>", overrides, catalogue);
+                             const Catalogue& catalogue, std::span<const DescriptionCheck> checks) {
+  if (device == "-") return parse_description(read_text("-"), "<stdin>", overrides, catalogue, checks);
   const std::string path = resolve_device(device, catalogue).string();
-  return parse_description(read_text(path), path, overrides, catalogue);
+  return parse_description(read_text(path), path, overrides, catalogue, checks);
 }
 
 }  // namespace zwidth

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,12 +19,17 @@
 
 namespace zwidth {
 
+/// A rule about whole descriptions that another room knows. It is asked once the description's own rules hold;
+/// its problems have keys, and get their places here.
+using DescriptionCheck = std::vector<Problem> (*)(const Description&);
+
 /// Reads the built-in device or the file that `device` names; "-" is the standard input.
 Description read_description(std::string_view device, const std::vector<std::string>& overrides,
-                             const Catalogue& catalogue);
+                             const Catalogue& catalogue, std::span<const DescriptionCheck> checks = {});
 
 /// Reads the text of a device file. `file` is what problems call it.
 Description parse_description(std::string_view text, std::string_view file,
-                              const std::vector<std::string>& overrides, const Catalogue& catalogue);
+                              const std::vector<std::string>& overrides, const Catalogue& catalogue,
+                              std::span<const DescriptionCheck> checks = {});
 
 }  // namespace zwidth

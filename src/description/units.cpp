@@ -303,6 +303,7 @@ std::string format_quantity(double value, Dimension dimension) {
   const DimensionEntry& wanted = entry(dimension);
   UnitSystem& units = UnitSystem::instance();
   std::string best;
+  std::size_t shortest = 0, later = 0;  // a unit that stands later in the list must be shorter by more
   for (const std::string_view customary : wanted.customary) {
     if (customary.empty() || !units.available()) break;
     const std::optional<Scale> scale = units.scale(std::string(customary), wanted);
@@ -313,9 +314,13 @@ std::string format_quantity(double value, Dimension dimension) {
       std::from_chars(number.data(), number.data() + number.size(), back);
       if (scale->to_si(back) != value) continue;
       const std::string plain = fmt::format("{}", back);  // 80, where %g with one digit says 8e+01
-      if (best.empty() || plain.size() < best.find(' ')) best = plain + ' ' + std::string(customary);
+      if (best.empty() || plain.size() + later < shortest) {
+        best = plain + ' ' + std::string(customary);
+        shortest = plain.size() + later;
+      }
       break;
     }
+    ++later;
   }
   return best.empty() ? fmt::format("{}", value) : best;
 }

@@ -129,6 +129,8 @@ TEST(Units, FormattingReadsBackExactly) {
 
 TEST(Units, FormattingPrefersCustomaryUnits) {
   EXPECT_EQ(format_quantity(0.08, Dimension::length), "80 mm");
+  EXPECT_EQ(format_quantity(0.080386, Dimension::length), "80.386 mm");
+  EXPECT_EQ(format_quantity(8e-6, Dimension::length), "8 um");
   EXPECT_EQ(format_quantity(si("84 deg", Dimension::angle), Dimension::angle), "84 deg");
   EXPECT_EQ(format_quantity(1.83e-6, Dimension::inertia), "18.3 g cm^2");
   EXPECT_EQ(format_quantity(9.5, Dimension::force), "9.5 N");

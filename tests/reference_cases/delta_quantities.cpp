@@ -1,3 +1,4 @@
+#include <cmath>
 #include <numbers>
 
 #include "quantities.h"
@@ -12,18 +13,26 @@ namespace {
 
 DeltaGeometry geometry(const Inputs& in) {
   return {.base_radius = in.number("d1_m"),
-          .upper_arm = in.number("d2_m"),
-          .forearm = in.number("d3_m"),
+          .upper_arm = positive(in, "d2_m"),
+          .forearm = positive(in, "d3_m"),
           .platform_radius = in.number("d4_m")};
 }
 
 Interval window(const Inputs& in) {
-  if (!in.has("theta_min_deg")) return {-std::numbers::pi, std::numbers::pi};
-  return {in.degrees("theta_min_deg"), in.degrees("theta_max_deg")};
+  constexpr Interval kAnyAngle = {-1e9, 1e9};
+  return in.has("theta_min_deg") ? Interval{in.degrees("theta_min_deg"), in.degrees("theta_max_deg")}
+                                 : kAnyAngle;
+}
+
+double positive(const Inputs& in, const std::string& key) {
+  const double value = in.number(key);
+  if (!(value > 0.0) || !std::isfinite(value)) throw Refusal("invalid_argument");
+  return value;
 }
 
 Mechanism mechanism(const Inputs& in) {
   const DeltaGeometry lengths = geometry(in);
+  if (!(window(in).width() > 0.0)) throw Refusal("invalid_argument");
   Description description;
   description.mechanism = DeltaDescription{.base_radius = lengths.base_radius,
                                            .upper_arm = lengths.upper_arm,
@@ -31,6 +40,12 @@ Mechanism mechanism(const Inputs& in) {
                                            .platform_radius = lengths.platform_radius,
                                            .joint_range = window(in)};
   return Mechanism(description);
+}
+
+/// For the workspace, which needs a window: without one the key is missed.
+Mechanism windowed(const Inputs& in) {
+  in.number("theta_min_deg");
+  return mechanism(in);
 }
 
 void refuse_unless_closed(SolveStatus status) {
@@ -54,8 +69,9 @@ DeltaState state(const Inputs& in) {
 
 DeltaState regular_state(const Inputs& in) {
   const DeltaState answer = state(in);
-  constexpr double kSingular = 1e-7;  // what rounding leaves of det R/d3^3 = 0
-  if (std::abs(answer.direct_singularity()) < kSingular) throw Refusal("singular");
+  // What rounding leaves of det R/d3^3 = 0: forward kinematics takes a root of a difference that cancels.
+  const double rounding = in.has("theta_rad") ? 1e-7 : 1e-12;
+  if (std::abs(answer.direct_singularity()) < rounding) throw Refusal("singular");
   return answer;
 }
 
@@ -86,9 +102,9 @@ Values list(const Vector3& v) {
 }
 
 LatticeSweep sweep(const Inputs& in) {
-  LatticeOptions options{.spacing = in.number("grid_m")};
+  LatticeOptions options{.spacing = positive(in, "grid_m")};
   if (in.has("tau_max_Nm")) options.limits.torque = in.vector("tau_max_Nm");
-  return sweep_workspace(mechanism(in), options);
+  return sweep_workspace(windowed(in), options);
 }
 
 }  // namespace
@@ -111,27 +127,27 @@ void add_delta(Quantities& q) {
     return list(axis_force_limits(regular_state(in).jacobian(), in.vector("tau_max_Nm")));
   };
 
-  q["delta.workspace_volume"] = [](const Inputs& in) { return Values{workspace_volume(mechanism(in)).value}; };
+  q["delta.workspace_volume"] = [](const Inputs& in) { return Values{workspace_volume(windowed(in)).value}; };
   q["delta.workspace_volume_lattice"] = [](const Inputs& in) { return Values{sweep(in).volume}; };
   q["delta.workspace_lattice_count"] = [](const Inputs& in) {
     return Values{static_cast<double>(sweep(in).inside)};
   };
   q["delta.workspace_extents"] = [](const Inputs& in) {
-    const auto range = workspace_extents(mechanism(in)).range;
+    const auto range = workspace_extents(windowed(in)).range;
     return Values{range[0].min, range[0].max, range[1].min, range[1].max, range[2].min, range[2].max};
   };
   q["delta.workspace_extents.height"] = [](const Inputs& in) {
-    return Values{workspace_extents(mechanism(in)).size().z()};
+    return Values{workspace_extents(windowed(in)).size().z()};
   };
   const std::array<std::string, 3> axes = {"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
     const std::string extents = "delta.workspace_extents." + axes[axis],
                       force = "delta.axis_force_statistics." + axes[axis];
     q[extents + "_min"] = [axis](const Inputs& in) {
-      return Values{workspace_extents(mechanism(in)).range[axis].min};
+      return Values{workspace_extents(windowed(in)).range[axis].min};
     };
     q[extents + "_max"] = [axis](const Inputs& in) {
-      return Values{workspace_extents(mechanism(in)).range[axis].max};
+      return Values{workspace_extents(windowed(in)).range[axis].max};
     };
     const auto statistic = [axis](const Inputs& in) {
       return sweep(in).figures[static_cast<int>(Figure::force_x) + axis];

@@ -186,6 +186,18 @@ void run_case(const Quantities& quantities, const json& one, Tally& tally) {
              quantity, expected, got, difference, tolerance.shown(), one.value("unit", ""));
 }
 
+// A case that cannot even be read is missed like any other, with the reason.
+void run_or_miss(const Quantities& quantities, const json& one, const std::string& place, Tally& tally) {
+  try {
+    run_case(quantities, one, tally);
+  } catch (const json::exception& problem) {
+    ++tally.failed;
+    const bool named = one.is_object() && one.contains("id") && one.at("id").is_string();
+    fmt::print("MISS {}  cannot be read: {}\n", named ? one.at("id").get<std::string>() : place,
+               problem.what());
+  }
+}
+
 // Python's json module writes NaN, which no other reader takes.
 std::string without_nan(std::istream& stream) {
   const std::string text(std::istreambuf_iterator<char>(stream), {});
@@ -208,7 +220,8 @@ int run(const std::vector<std::string>& files) {
     try {
       json cases = json::parse(without_nan(stream));
       if (cases.is_object()) cases = cases.at("cases");
-      for (const json& one : cases) run_case(quantities, one, tally);
+      int number = 0;
+      for (const json& one : cases) run_or_miss(quantities, one, fmt::format("case {}", ++number), tally);
     } catch (const json::exception& problem) {
       fmt::print(stderr, "reference_cases: {}: {}\n", file, problem.what());
       return 2;

@@ -1,11 +1,13 @@
 #include "context.h"
 
+#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fmt/format.h>
 
+#include "zwidth/actuation/drive_problems.h"
 #include "zwidth/description/read.h"
 
 namespace zwidth {
@@ -37,8 +39,9 @@ const Catalogue& catalogue() {
   return loaded;
 }
 
-Description read_device(const DeviceArguments& arguments) {
-  return read_description(arguments.device, arguments.overrides, catalogue());
+Description read_device(const std::string& device, const std::vector<std::string>& overrides) {
+  static constexpr DescriptionCheck kChecks[] = {drive_problems};
+  return read_description(device, overrides, catalogue(), kChecks);
 }
 
 void print(const std::string& text) {

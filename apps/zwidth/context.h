@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -13,6 +12,10 @@
 #include "zwidth/description/description.h"
 
 /// What every verb shares: its outcome, the device it reads, and how it prints.
+
+namespace CLI {
+class App;
+}
 
 namespace zwidth {
 
@@ -65,8 +68,11 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& de
 /// The parts and devices that come with zwidth, read on first use.
 const Catalogue& catalogue();
 
-/// The description that the arguments name, with its overrides. Throws DescriptionError.
-Description read_device(const DeviceArguments& arguments);
+/// The description of a device, with its overrides, held to the rules of every room. Throws DescriptionError.
+Description read_device(const std::string& device, const std::vector<std::string>& overrides);
+inline Description read_device(const DeviceArguments& arguments) {
+  return read_device(arguments.device, arguments.overrides);
+}
 
 /// Writes to the standard output; a full disk or a closed pipe throws MachineError.
 void print(const std::string& text);

@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
@@ -58,10 +59,10 @@ template <class Part>
 std::vector<Column> overview();
 template <>
 std::vector<Column> overview<Motor>() {
-  return {{"mN m", "nominal_torque", 1e3},
-          {"A", "nominal_current", 1.0},
+  return {{"torque mN m", "nominal_torque", 1e3},
+          {"current A", "nominal_current", 1.0},
           {"mN m/A", "torque_constant", 1e3},
-          {"g cm²", "rotor_inertia", 1e7}};
+          {"rotor g cm²", "rotor_inertia", 1e7}};
 }
 template <>
 std::vector<Column> overview<Gearhead>() {
@@ -71,29 +72,32 @@ std::vector<Column> overview<Gearhead>() {
 }
 template <>
 std::vector<Column> overview<Encoder>() {
-  return {{"pulses/turn", "pulses_per_turn", 1.0}, {"kHz", "max_frequency", 1e-3}};
+  return {{"pulses/turn", "pulses_per_turn", 1.0}, {"at most kHz", "max_frequency", 1e-3}};
 }
 template <>
 std::vector<Column> overview<Amplifier>() {
-  return {
-      {"A", "continuous_current", 1.0}, {"A peak", "max_current", 1.0}, {"V max", "max_supply_voltage", 1.0}};
+  return {{"continuous A", "continuous_current", 1.0},
+          {"peak A", "max_current", 1.0},
+          {"supply V", "max_supply_voltage", 1.0}};
 }
 template <>
 std::vector<Column> overview<Cable>() {
-  return {{"mm coated", "coated_diameter", 1e3},
-          {"N working", "max_working_load", 1.0},
-          {"N breaking", "breaking_load", 1.0}};
+  return {{"coated mm", "coated_diameter", 1e3},
+          {"working N", "max_working_load", 1.0},
+          {"breaking N", "breaking_load", 1.0}};
 }
 template <>
 std::vector<Column> overview<Bearing>() {
-  return {{"mm bore", "bore", 1e3},
-          {"mm outer", "outer_diameter", 1e3},
-          {"N static", "static_load", 1.0},
-          {"N dynamic", "dynamic_load", 1.0}};
+  return {{"bore mm", "bore", 1e3},
+          {"outer mm", "outer_diameter", 1e3},
+          {"static N", "static_load", 1.0},
+          {"dynamic N", "dynamic_load", 1.0}};
 }
 template <>
 std::vector<Column> overview<Material>() {
-  return {{"GPa", "elastic_modulus", 1e-9}, {"kg/m³", "density", 1.0}, {"MPa yield", "yield_strength", 1e-6}};
+  return {{"modulus GPa", "elastic_modulus", 1e-9},
+          {"density kg/m³", "density", 1.0},
+          {"yield MPa", "yield_strength", 1e-6}};
 }
 
 class Parts {
@@ -184,7 +188,7 @@ class Parts {
       for (const Column& column : columns_of_kind) {
         for (const PartValue& value : values) {
           if (value.key == column.key)
-            row.push_back(given(value.value) ? trimmed(value.value * column.factor) : "–");
+            row.push_back(given(value.value) ? trimmed(value.value * column.factor, 4) : "–");
         }
       }
       rows.push_back(row);

@@ -1,13 +1,15 @@
+#include <CLI/CLI.hpp>
 #include <clocale>
 #include <exception>
 #include <fmt/format.h>
+#include <memory>
 #include <new>
 #include <string>
 #include <vector>
 
+#include "help.h"
 #include "verbs.h"
 
-#include "zwidth/actuation/drive.h"
 #include "zwidth/description/problem.h"
 
 namespace zwidth {
@@ -48,6 +50,7 @@ int run(int argc, char** argv) {
   context.terminal = detect_terminal(1);
 
   CLI::App app("zwidth designs, simulates and drives force-feedback haptic devices.", "zwidth");
+  app.formatter(std::make_shared<HelpFormatter>(context.terminal.width));
   app.set_version_flag("--version", "zwidth " ZWIDTH_VERSION);
   app.require_subcommand(0, 1);
   app.footer(
@@ -99,9 +102,6 @@ int main(int argc, char** argv) {
     return run(argc, argv);
   } catch (const DescriptionError& error) {
     for (const Problem& problem : error.problems()) complain(to_string(problem));
-    return kInputWrong;
-  } catch (const InvalidDrive& error) {
-    complain(error.what());
     return kInputWrong;
   } catch (const InputError& error) {
     complain(error.what());

@@ -12,7 +12,7 @@ namespace zwidth {
 
 /// A device ready to be asked: its mechanism, with the drives' inertia on the joints, and its drives.
 struct Model {
-  /// Throws InvalidDrive when a drive's numbers contradict each other.
+  /// REQUIRES: the description comes from `read_device`.
   explicit Model(const Description& description);
 
   Description description;

@@ -6,7 +6,8 @@
 #include <fmt/format.h>
 #include <numbers>
 
-#include "figure.h"
+#include "figure/plot.h"
+#include "figure/solid.h"
 #include "terminal.h"
 
 #include "zwidth/mechanism/posture.h"
@@ -16,6 +17,7 @@ namespace zwidth {
 namespace {
 
 constexpr double kWidth = 470.0;
+constexpr double kWideWidth = 930.0;          // alone in its row
 constexpr double kMapWidth = 350.0;           // three beside each other
 constexpr std::array<int, 3> kCuts{2, 1, 0};  // normals of the three cuts, in reading order
 
@@ -210,7 +212,7 @@ SheetFigure workspace_solid(const WorkspaceSheet& workspace) {
   const Vector3 low(range[0].min, range[1].min, range[2].min);
   const Vector3 high(range[0].max, range[1].max, range[2].max);
   const double size = (high - low).norm();
-  Solid solid(kWidth, 400.0, -1.05, 0.42, 540.0 / size, 0.5 * (low + high) - Vector3(0.0, 0.0, 0.04 * size));
+  Solid solid(kWidth, 420.0, -1.05, 0.42, 520.0 / size, 0.5 * (low + high) - Vector3(0.0, 0.0, 0.08 * size));
   const double floor = low.z() - 0.12 * (high.z() - low.z());
   const auto xs = round_ticks(low.x() * kMilli, high.x() * kMilli, 5);
   const auto ys = round_ticks(low.y() * kMilli, high.y() * kMilli, 5);
@@ -411,9 +413,9 @@ void current_loop(const DriveSheet& drive, const std::string& section, const std
 
 /// Bars of what is used of each limit.
 SheetFigure margins(const DriveSheet& drive, const std::string& section, const std::string& suffix) {
-  const double row = 27.0;
-  const double left = 196.0;
-  const double right = kWidth - 58.0;
+  const double row = 24.0;
+  const double left = 206.0;
+  const double right = kWideWidth - 70.0;
   const double top = 8.0;
   double most = 1.2;
   for (const Margin& margin : drive.margins) most = std::max(most, margin.utilisation.value_or(0.0) * 1.05);
@@ -423,7 +425,7 @@ SheetFigure margins(const DriveSheet& drive, const std::string& section, const s
   std::string svg = fmt::format(
       "<svg class=\"figure\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"Share of every limit that "
       "is used\"><title>Share of every limit that is used</title>",
-      kWidth, bottom + 42.0);
+      kWideWidth, bottom + 42.0);
   for (double share = 0.0; share <= most + 1e-9; share += most > 1.6 ? 0.5 : 0.25) {
     svg += fmt::format(
         "<path class=\"grid\" d=\"M{:.1f} {:.1f}V{:.1f}\"/><text x=\"{:.1f}\" y=\"{:.1f}\" "
@@ -435,11 +437,11 @@ SheetFigure margins(const DriveSheet& drive, const std::string& section, const s
   for (const Margin& margin : drive.margins) {
     const double share = margin.utilisation.value_or(most);
     svg += fmt::format("<text class=\"strong\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>",
-                       left - 8.0, y + 18.0, escaped(margin.name));
+                       left - 8.0, y + 17.0, escaped(margin.name));
     svg += fmt::format("<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"15\" rx=\"2\"/>",
-                       margin.ok ? "f3" : "bad", left, y + 6.0, std::max(1.0, x(share) - left));
+                       margin.ok ? "f3" : "bad", left, y + 5.0, std::max(1.0, x(share) - left));
     labels +=
-        fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", kWidth - 2.0, y + 18.0,
+        fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", kWideWidth - 2.0, y + 17.0,
                     margin.utilisation ? fmt::format("{} %", number(100.0 * share, 3)) : "no limit");
     y += row;
   }

@@ -6,7 +6,7 @@
 #include <functional>
 #include <set>
 
-#include "figure.h"
+#include "figure/svg.h"
 #include "model.h"
 #include "sheet_text.h"
 #include "terminal.h"
@@ -58,7 +58,7 @@ figure b{font-size:14.5px}
 table{border-collapse:collapse;width:100%;font-size:14.5px;font-variant-numeric:tabular-nums}
 th,td{padding:7px 14px;text-align:left;vertical-align:top;border-bottom:1px solid var(--grid)}
 tr:last-child td{border-bottom:0}
-.wide{grid-column:1/-1}.wide svg{max-width:640px}
+.wide{grid-column:1/-1}
 .pair{columns:2;column-gap:24px}@media (max-width:760px){.pair{columns:1}}.pair dl{display:flex;justify-content:space-between;gap:16px;margin:0;padding:6px 0;border-bottom:1px solid var(--grid);break-inside:avoid;font-size:14.5px}
 .pair dt{margin:0}.pair dd{margin:0;white-space:nowrap;font-variant-numeric:tabular-nums}
 th{white-space:nowrap;font-weight:600;font-size:13px;color:var(--muted)}
@@ -291,10 +291,12 @@ class Page {
     values_table([](const DescribedValue& value) { return value.table == "mechanism"; }, false);
   }
 
-  void statistics_head() {
-    rows_ =
-        "<tr><th></th><th class=\"n\">Least</th><th class=\"n\">Mean</th><th "
-        "class=\"n\">Most</th><th>Unit</th></tr>";
+  /// Extremes and mean, which a finer lattice would move a little.
+  void statistics_head(double spacing) {
+    rows_ = fmt::format(
+        "<tr><th>Over a lattice of {}</th><th class=\"n\">Least</th><th class=\"n\">Mean</th><th "
+        "class=\"n\">Most</th><th>Unit</th></tr>",
+        format_quantity(spacing, Dimension::length));
   }
   void statistics(const std::string& name, const Statistic& statistic, double factor, const std::string& unit) {
     const bool has = statistic.count > 0;
@@ -341,9 +343,8 @@ class Page {
 
   void dexterity(const WorkspaceSheet& workspace) {
     section("dexterity", "Dexterity");
-    how(fmt::format("Over {} points of a {} lattice in the workspace.", workspace.sweep.inside,
-                    format_quantity(workspace.sweep.spacing, Dimension::length)));
-    statistics_head();
+    how(fmt::format("At {} lattice points in the workspace.", workspace.sweep.inside));
+    statistics_head(workspace.sweep.spacing);
     statistics("Condition number of the Jacobian (1 is best)", workspace.sweep[Figure::condition_number], 1.0,
                "");
     statistics("Manipulability |det J|", workspace.sweep[Figure::manipulability], 1e6, "cm³/rad³");
@@ -367,7 +368,7 @@ class Page {
          {std::pair{"Continuous", &*sheet_.continuous}, std::pair{"Peak", &*sheet_.peak}}) {
       body_ += fmt::format("<h3>{}: {} per joint, limited by the {}</h3>\n", name,
                            escaped(readable(forces->torque.minCoeff(), "N m")), escaped(forces->limited_by));
-      statistics_head();
+      statistics_head(sheet_.workspace->sweep.spacing);
       for (size_t k = 0; k < 3; ++k)
         statistics(fmt::format("Pure force along {}", axis(k)), forces->axes[k], 1.0, "N");
       statistics("In every direction", forces->weakest, 1.0, "N");
@@ -380,10 +381,8 @@ class Page {
   void inertia() {
     if (!sheet_.inertia) return;
     section("inertia", "Inertia");
-    how(fmt::format(
-        "Apparent mass at the tool, free to move sideways, with rotors and transmissions; lattice of {}.",
-        format_quantity(sheet_.inertia->spacing, Dimension::length)));
-    statistics_head();
+    how("Apparent mass at the tool, free to move sideways, with rotors and transmissions.");
+    statistics_head(sheet_.inertia->spacing);
     for (size_t k = 0; k < 3; ++k)
       statistics(fmt::format("Along {}", axis(k)), sheet_.inertia->along_axes[k], kMilli, "g");
     statistics("In the lightest direction", sheet_.inertia->lightest, kMilli, "g");
@@ -398,7 +397,7 @@ class Page {
     section("resolution", "Resolution");
     how("Step of the tool when every joint moves by one encoder count, at worst; step of the force when every "
         "motor changes by one current step.");
-    statistics_head();
+    statistics_head(sheet_.workspace->sweep.spacing);
     for (size_t k = 0; k < 3; ++k)
       statistics(fmt::format("Position along {}", axis(k)), sheet_.resolution[k], 1e6, "µm");
     statistics_end();

@@ -227,7 +227,9 @@ Json data_sheet_json(const DataSheet& sheet, const Description& description) {
     absent("workspace", "defined for three active joints and a tool that only translates");
   }
   if (sheet.continuous && sheet.peak) {
-    document["forces"] = {{"continuous", force_json(*sheet.continuous)}, {"peak", force_json(*sheet.peak)}};
+    document["forces"] = {{"spacing", json_number(sheet.workspace->sweep.spacing)},
+                          {"continuous", force_json(*sheet.continuous)},
+                          {"peak", force_json(*sheet.peak)}};
   } else {
     absent("forces", "needs a drive on every active joint, and a workspace");
   }
@@ -243,6 +245,7 @@ Json data_sheet_json(const DataSheet& sheet, const Description& description) {
   Json resolution;
   resolution["joint"] = json_array(sheet.joint_resolution);
   resolution["torque"] = json_array(sheet.torque_resolution);
+  if (sheet.workspace) resolution["spacing"] = json_number(sheet.workspace->sweep.spacing);
   resolution["position"] = axes_json(sheet.resolution);
   document["resolution"] = resolution;
   if (sheet.middle) {

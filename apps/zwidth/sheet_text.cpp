@@ -186,6 +186,13 @@ class SheetText {
             number(statistic.max * factor), unit};
   }
 
+  /// Extremes and mean, which a finer lattice would move a little.
+  void statistics(const std::vector<std::vector<std::string>>& rows, double spacing) {
+    text_.table({fmt::format("over a lattice of {}", format_quantity(spacing, Dimension::length)), "min",
+                 "mean", "max", ""},
+                rows);
+  }
+
   void dexterity(const WorkspaceSheet& workspace) {
     text_.heading("Dexterity over the workspace");
     std::vector<std::vector<std::string>> rows;
@@ -196,7 +203,7 @@ class SheetText {
           cells("leg singularity (0 = singular)", workspace.sweep[Figure::leg_singularity], 1.0, ""));
       rows.push_back(cells("platform singularity", workspace.sweep[Figure::platform_singularity], 1.0, ""));
     }
-    text_.table({"", "min", "mean", "max", ""}, rows);
+    statistics(rows, workspace.sweep.spacing);
   }
 
   void forces() {
@@ -211,7 +218,7 @@ class SheetText {
       rows.push_back(cells(fmt::format("{}, in every direction", name), forces->weakest, 1.0, "N"));
       rows.push_back(cells(fmt::format("{}, in the best direction", name), forces->strongest, 1.0, "N"));
     }
-    text_.table({"", "min", "mean", "max", ""}, rows);
+    statistics(rows, sheet_.workspace->sweep.spacing);
     const auto torque = [](const ForceSheet& forces) {
       const bool same = (forces.torque.array() == forces.torque[0]).all();
       return same ? readable(forces.torque[0], "N m")
@@ -235,7 +242,7 @@ class SheetText {
     rows.push_back(cells("in the lightest direction", inertia.lightest, kMilli, "g"));
     rows.push_back(cells("in the heaviest direction", inertia.heaviest, kMilli, "g"));
     rows.push_back(cells("torque against gravity", inertia.gravity_torque, kMilli, "mN m"));
-    text_.table({"", "min", "mean", "max", ""}, rows);
+    statistics(rows, inertia.spacing);
   }
 
   void resolution() {
@@ -245,7 +252,7 @@ class SheetText {
     const char* axes = "xyz";
     for (size_t k = 0; k < 3; ++k)
       rows.push_back(cells(fmt::format("smallest step along {}", axes[k]), sheet_.resolution[k], 1e6, "µm"));
-    text_.table({"", "min", "mean", "max", ""}, rows);
+    statistics(rows, sheet_.workspace->sweep.spacing);
     if (sheet_.middle && sheet_.middle->force_resolution) {
       const Vector3 f = *sheet_.middle->force_resolution * kMilli;
       text_.row("force step, mid-range",

@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include "model.h"
 #include "verbs.h"
 
+#include "zwidth/actuation/drive_problems.h"
 #include "zwidth/analysis/force.h"
 #include "zwidth/description/units.h"
 #include "zwidth/mechanism/dynamics.h"
@@ -22,6 +24,10 @@ struct SizeArguments : DeviceArguments {
   std::string load;
   std::string position;
 };
+
+/// Rules of a drive that do not depend on how hard the motor is driven.
+const std::set<std::string> kStanding = {"supply voltage", "least supply voltage", "encoder frequency",
+                                         "wrap spacing",   "cable bend radius",    "sector range"};
 
 /// What one posture asks of one joint.
 struct Loading {
@@ -119,25 +125,24 @@ std::vector<Candidate> candidates(const Drive& drive, double joint_torque) {
   const auto try_part = [&](const char* kind, const PartInfo& info, const std::string& used,
                             const DriveDescription& description) {
     Candidate candidate{kind, info.name, info.name == used, false, 0.0, ""};
-    if (const auto other = Drive::try_make(description, drive.joint_range())) {
-      candidate.continuous = other->continuous_torque().usable;
-      candidate.reason = first_failure(*other, joint_torque);
-      // Rules that do not depend on how hard the motor is driven; those that the present drive breaks are its
-      // own affair.
-      static const std::set<std::string> kFit = {"supply voltage",  "least supply voltage", "encoder frequency",
-                                                 "cable seat",      "wrap spacing",         "cable bend radius",
-                                                 "centre distance", "sector range"};
+    const std::vector<Problem> problems = drive_problems(description, "drive");
+    if (problems.empty()) {
+      const Drive other(description, drive.joint_range());
+      candidate.continuous = other.continuous_torque().usable;
+      candidate.reason = first_failure(other, joint_torque);
+      // Rules that the present drive breaks are its own affair.
       const auto present = drive.margins();
-      for (const Margin& margin : other->margins()) {
+      for (const Margin& margin : other.margins()) {
         const auto same = std::find_if(present.begin(), present.end(),
                                        [&](const Margin& m) { return m.name == margin.name; });
         const bool broken_already = same != present.end() && !same->ok;
-        if (candidate.reason.empty() && !margin.ok && kFit.contains(margin.name) && !broken_already)
+        if (candidate.reason.empty() && !margin.ok && kStanding.contains(margin.name) && !broken_already)
           candidate.reason = margin.name;
       }
       candidate.fits = candidate.reason.empty();
     } else {
-      candidate.reason = "does not fit the transmission";
+      const std::string& rule = problems.front().rule;
+      candidate.reason = rule.substr(0, rule.find(':'));  // what follows explains
     }
     list.push_back(candidate);
   };
@@ -355,6 +360,15 @@ class Sizing {
     entry["margins"] = margins;
     sheet_.heading(fmt::format("Margins of the drive of {} at {}", names, readable(torque, "N m")));
     sheet_.table({"", "demand", "limit", "used", "", ""}, rows);
+    Json broken = Json::array();
+    for (const Margin& margin : drive.margins()) {
+      if (margin.ok || !kStanding.contains(margin.name)) continue;
+      broken.push_back(margin.name);
+      sheet_.paragraph(
+          fmt::format("whatever the load, {}: {} of {}; {}", margin.name, readable(margin.demand, margin.unit),
+                      readable(margin.capability, margin.unit), margin.rule),
+          2, Tint::warning);
+    }
     Json parts = Json::array();
     rows.clear();
     for (const Candidate& candidate : candidates(drive, torque)) {

@@ -95,12 +95,12 @@ int columns(std::string_view text) {
 
 std::string spelled_in_ascii(std::string_view text) {
   static const std::pair<std::string_view, std::string_view> kSpellings[] = {
-      {"─", "-"},  {"━", "="},  {"│", "|"},     {"·", "."},     {"•", "*"},      {"…", ".."},
-      {"–", "-"},  {"—", "-"},  {"−", "-"},     {"°", "deg"},   {"²", "^2"},     {"³", "^3"},
-      {"µ", "u"},  {"μ", "u"},  {"Ω", "ohm"},   {"±", "+-"},    {"×", "x"},      {"≤", "<="},
-      {"≥", ">="}, {"→", "->"}, {"√", "sqrt "}, {"τ", "tau"},   {"θ", "theta"},  {"✓", "ok"},
-      {"✗", "no"}, {"▲", "!"},  {"█", "#"},     {"░", "."},     {"″", "arcsec"}, {"‑", "-"},
-      {"“", "\""}, {"”", "\""}, {"’", "'"},     {"σ", "sigma"}, {"η", "eta"},    {"◂", "*"}};
+      {"─", "-"},      {"━", "="},     {"│", "|"},   {"·", "."},  {"•", "*"},  {"…", ".."},    {"–", "-"},
+      {"—", "-"},      {"−", "-"},     {"°", "deg"}, {"²", "^2"}, {"³", "^3"}, {"µ", "u"},     {"μ", "u"},
+      {"Ω", "ohm"},    {"±", "+-"},    {"×", "x"},   {"≤", "<="}, {"≥", ">="}, {"→", "->"},    {"√", "sqrt "},
+      {"τ", "tau"},    {"θ", "theta"}, {"✓", "ok"},  {"✗", "no"}, {"▲", "!"},  {"█", "#"},     {"░", "."},
+      {"″", "arcsec"}, {"‑", "-"},     {"“", "\""},  {"”", "\""}, {"’", "'"},  {"σ", "sigma"}, {"η", "eta"},
+      {"◂", "*"},      {"ᵀ", "^T"}};
   std::string result;
   for (size_t i = 0; i < text.size();) {
     if (static_cast<unsigned char>(text[i]) < 0x80) {
@@ -231,21 +231,24 @@ void Sheet::gap() {
 }
 
 std::vector<std::string> Sheet::wrapped(std::string_view text, int width) const {
-  // Spelling in ASCII lengthens words, so measure what will be printed.
-  const std::string spelled = terminal_.unicode ? std::string(text) : spelled_in_ascii(text);
+  // Spelling in ASCII lengthens words.
+  return zwidth::wrapped(terminal_.unicode ? std::string(text) : spelled_in_ascii(text), width);
+}
+
+std::vector<std::string> wrapped(std::string_view text, int width) {
   std::vector<std::string> lines(1);
-  for (size_t i = 0; i < spelled.size();) {
-    if (spelled[i] == '\n') {
+  for (size_t i = 0; i < text.size();) {
+    if (text[i] == '\n') {
       lines.emplace_back();
       ++i;
       continue;
     }
-    if (spelled[i] == ' ') {
+    if (text[i] == ' ') {
       ++i;
       continue;
     }
-    const size_t end = std::min(spelled.find_first_of(" \n", i), spelled.size());
-    const std::string word = spelled.substr(i, end - i);
+    const size_t end = std::min(text.find_first_of(" \n", i), text.size());
+    const std::string_view word = text.substr(i, end - i);
     if (!lines.back().empty() && columns(lines.back()) + 1 + columns(word) > width) lines.emplace_back();
     if (!lines.back().empty()) lines.back() += ' ';
     lines.back() += word;

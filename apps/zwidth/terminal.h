@@ -29,6 +29,9 @@ std::string tinted(const Terminal& terminal, Tint tint, std::string_view text);
 /// Columns that UTF-8 `text` takes, escape sequences left out.
 int columns(std::string_view text);
 
+/// `text` in lines of at most `width` columns, broken between words; a longer word stands alone.
+std::vector<std::string> wrapped(std::string_view text, int width);
+
 /// UTF-8 typography (dashes, degree signs, superscripts, Greek) spelled in ASCII.
 std::string spelled_in_ascii(std::string_view text);
 
@@ -56,6 +59,7 @@ class Sheet {
  private:
   /// Columns of the text as it will be printed.
   int width_of(std::string_view text) const;
+  /// Measured as it will be printed.
   std::vector<std::string> wrapped(std::string_view text, int width) const;
 
   Terminal terminal_;

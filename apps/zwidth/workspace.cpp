@@ -1,5 +1,6 @@
 #include "zwidth/analysis/workspace.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -8,7 +9,7 @@
 #include <mutex>
 #include <sstream>
 
-#include "figure.h"
+#include "figure/svg.h"
 #include "gnuplot.h"
 #include "interrupt.h"
 #include "model.h"

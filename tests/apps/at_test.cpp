@@ -161,6 +161,86 @@ TEST(At, OnlyPrintsWhatWasAsked) {
               document.contains("jacobian"));
 }
 
+TEST(At, OnlyChoosesTheLinesOfThePageToo) {
+  const Outcome outcome = run({"at", "delta", "--joints", "0,0,0", "--only", "position,force_limits"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* there : {"status", "position [mm]", "continuous force"})
+    EXPECT_NE(outcome.out.find(there), std::string::npos) << there;
+  for (const char* gone : {"Joints", "Jacobian", "against gravity", "mass matrix", "Resolution"})
+    EXPECT_EQ(outcome.out.find(gone), std::string::npos) << gone;
+}
+
+TEST(At, KeyThatNeedsAnOptionSaysWhich) {
+  const json document = run({"at", "delta", "--joints", "0,0,0", "--only", "velocity", "--json"}).json();
+  EXPECT_TRUE(document["velocity"].is_null());
+  EXPECT_NE(document["notes"]["velocity"].get<std::string>().find("--rate"), std::string::npos);
+}
+
+// A delta whose arms and forearms lie flat, one on the other, at the origin: the tool gains a freedom upwards.
+const std::vector<std::string> kFlat = {
+    "--set", "mechanism.base_radius=100 mm",    "--set", "mechanism.upper_arm=100 mm",
+    "--set", "mechanism.platform_radius=40 mm", "--set", "mechanism.joint_range=[\"-90 deg\", \"90 deg\"]"};
+
+TEST(At, SingularityThatGainsAFreedomHoldsNoForceAlongIt) {
+  std::vector<std::string> arguments{"at", "delta", "--position", "0,0,0", "--json"};
+  arguments.insert(arguments.end(), kFlat.begin(), kFlat.end());
+  const Outcome outcome = run(arguments);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json document = outcome.json();
+  EXPECT_EQ(document["status"], "degraded");
+  EXPECT_EQ(document["singularity"]["kind"], "the tool gains a freedom");
+  EXPECT_NEAR(std::abs(document["singularity"]["free_direction"][2].get<double>()), 1.0, 1e-9);
+  EXPECT_EQ(document["force_limits"]["continuous"]["every_direction"].get<double>(), 0.0);
+  for (const char* key : {"jacobian", "torques", "gravity_torques", "mass_matrix", "cartesian_mass"}) {
+    EXPECT_TRUE(document[key].is_null()) << key;
+    EXPECT_TRUE(document["notes"].contains(key)) << key;
+  }
+  arguments.erase(arguments.begin() + 4);
+  const std::string page = run(arguments).out;
+  EXPECT_NE(page.find("none"), std::string::npos) << page;
+  EXPECT_EQ(page.find("e+"), std::string::npos) << "rounding is no figure: " << page;
+}
+
+TEST(At, SingularityThatLosesAFreedomBearsAnyForceAlongIt) {
+  // Arm and forearm of leg 1 in one line, 80 + 160 mm along (0, 0.28, 0.96) from its axis at y = -40 mm.
+  std::vector<std::string> arguments{"at",         "delta",
+                                     "--position", "0,0.0272,0.2304",
+                                     "--set",      "mechanism.base_radius=40 mm",
+                                     "--set",      "mechanism.platform_radius=80 mm",
+                                     "--set",      "mechanism.joint_range=[\"-150 deg\", \"150 deg\"]"};
+  const std::string page = run(arguments).out;
+  EXPECT_NE(page.find("unlimited"), std::string::npos) << page;
+  arguments.emplace_back("--json");
+  const Outcome outcome = run(arguments);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json document = outcome.json();
+  EXPECT_EQ(document["status"], "degraded");
+  EXPECT_EQ(document["singularity"]["kind"], "the tool loses a freedom");
+  const json& lost = document["singularity"]["weak_direction"];
+  EXPECT_NEAR(std::abs(lost[1].get<double>()), 0.28, 1e-6);
+  EXPECT_NEAR(std::abs(lost[2].get<double>()), 0.96, 1e-6);
+  EXPECT_EQ(document["manipulability"].get<double>(), 0.0);
+  const json& limits = document["force_limits"]["continuous"];
+  EXPECT_TRUE(limits["strongest"].is_null());
+  EXPECT_GT(limits["every_direction"].get<double>(), 0.0);
+  EXPECT_TRUE(document["cartesian_mass"].is_null());
+}
+
+TEST(At, PointOfTheOtherAssemblyModeIsUnreachableAndSaysSo) {
+  // Below the base the legs meet, but driven to those angles the tool stands above them.
+  const Outcome outcome = run({"at", "delta", "--position", "0,0,-0.076", "--json"});
+  EXPECT_EQ(outcome.status, 1);
+  const json document = outcome.json();
+  EXPECT_EQ(document["status"], "unreachable");
+  EXPECT_NE(document["reason"].get<std::string>().find("assembly mode"), std::string::npos);
+  const json& branch = document["solutions"][0];
+  EXPECT_EQ(branch["assembly"], "other");
+  EXPECT_TRUE(branch["within_range"].get<bool>());
+  EXPECT_TRUE(document.contains("nearest_reachable"));
+  const json branches = run({"at", "delta", "--position", "0,0,0.15", "--json"}).json()["solutions"];
+  EXPECT_EQ(branches[0]["assembly"], "own");
+}
+
 TEST(At, UnreachablePointSaysWhichLegHowFarAndTheNearestPoint) {
   const Outcome outcome = run({"at", "delta", "--position", "0,0,0.5", "--json"});
   EXPECT_EQ(outcome.status, 1);

@@ -48,6 +48,27 @@ TEST(Errors, UnknownPartInADevice) {
   expect_refused({"at", "delta", "--joints", "0,0,0", "--set", "drive.motor=maxon-ec-4pole-31"}, 2,
                  {"--set", "drive", "maxon-ec-4pole-31"});
 }
+TEST(Errors, GeometryOfADriveThatCannotBe) {
+  const ScratchDirectory scratch;
+  std::string text = run({"show", "delta"}).out;
+  text.replace(text.find("80.5 mm"), 7, "80.3 mm");
+  const std::string file = scratch.file("overlap.toml", text);
+  const std::string line = std::to_string(
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("80.3 mm")), '\n'));
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"check", file},
+                                             {"size", file},
+                                             {"at", file, "--joints", "0,0,0"},
+                                             {"report", file, "-o", (scratch.path() / "out").string()}}) {
+    expect_refused(
+        arguments, 2,
+        {file + ":" + line, "drive[0].transmission.centre_distance", "80.3 mm", "overlap", "80.386 mm"});
+  }
+  EXPECT_FALSE(std::filesystem::exists(scratch.path() / "out"));
+  expect_refused({"size", "delta", "--set", "drive.transmission.cable.coated_diameter=1.1 mm", "--set",
+                  "drive.transmission.centre_distance=90 mm"},
+                 2, {"--set", "coated_diameter", "1.1 mm", "groove", "at most"});
+}
 TEST(Errors, UnknownKeyInSet) {
   expect_refused({"report", "delta", "--set", "mechanism.foream=170 mm"}, 2, {"foream", "forearm"});
 }
@@ -72,6 +93,8 @@ TEST(Errors, NeitherJointsNorPosition) {
 }
 TEST(Errors, UnknownKeyInOnly) {
   expect_refused({"at", "delta", "--joints", "0,0,0", "--only", "postion"}, 2, {"postion", "position"});
+  expect_refused({"at", "delta", "--joints", "0,0,0", "--only", "stiffness"}, 2,
+                 {"stiffness", "not computed yet"});
 }
 TEST(Errors, UnknownFrame) {
   expect_refused({"at", "delta", "--joints", "0,0,0", "--frame", "world"}, 2, {"world", "user"});

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <sstream>
 
 #include "run_command.h"
 
@@ -14,6 +15,20 @@ TEST(Command, HelpOfEveryVerbHasExamples) {
     const Outcome outcome = run({verb, "--help"});
     EXPECT_EQ(outcome.status, 0) << verb;
     EXPECT_NE(outcome.out.find("zwidth " + std::string(verb)), std::string::npos) << verb;
+  }
+}
+
+TEST(Command, HelpFitsTheTerminal) {
+  for (const int width : {80, 120}) {
+    for (const char* verb : {"", "report", "at", "workspace", "size", "reproduce", "show", "check", "devices",
+                             "parts", "completion"}) {
+      std::vector<std::string> arguments{"--help"};
+      if (*verb != '\0') arguments.insert(arguments.begin(), verb);
+      const Outcome outcome = run(arguments, {.environment = {"COLUMNS=" + std::to_string(width)}});
+      std::istringstream lines(outcome.out);
+      for (std::string line; std::getline(lines, line);)
+        EXPECT_LE(line.size(), static_cast<size_t>(width)) << verb << ": " << line;
+    }
   }
 }
 

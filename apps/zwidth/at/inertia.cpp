@@ -1,0 +1,77 @@
+#include "zwidth/analysis/inertia.h"
+
+#include <cmath>
+
+#include "section.h"
+
+#include "zwidth/analysis/force.h"
+#include "zwidth/analysis/resolution.h"
+#include "zwidth/mechanism/delta.h"
+#include "zwidth/mechanism/dynamics.h"
+
+/// What the hand feels of the device's mass, and of the steps of its sensors and currents.
+
+namespace zwidth::at {
+
+namespace {
+
+void show_matrix(const char* label, const ActiveMatrix& M, const char* note, Answer& answer) {
+  for (Eigen::Index i = 0; i < M.rows(); ++i)
+    answer.cells(i == 0 ? label : "", M.row(i).transpose(), 1e7, i == 0 ? note : "");
+}
+
+}  // namespace
+
+void write_mass_matrix(const Situation& at, Answer& answer) {
+  const ActiveMatrix M = mass_matrix(at.posture, at.rates);
+  answer.put("mass_matrix", json_array(M));
+  answer.columns(at.mechanism.active_names());
+  show_matrix("mass matrix [g cm²]", M, "", answer);
+}
+
+void write_point_mass(const Situation& at, Answer& answer) {
+  const auto& geometry = at.mechanism.delta();
+  if (!geometry) return;
+  DeltaMasses masses = delta_masses(at.model.description);
+  masses.motor_inertia = Vector3(at.mechanism.drive_inertia());
+  const DeltaState state(*geometry, Vector3(at.posture.active()), at.posture.tool().position);
+  const Matrix3 M = DeltaPointMassDynamics(*geometry, masses).mass_matrix(state);
+  answer.put("mass_matrix_point_mass", json_array(M));
+  answer.columns(at.mechanism.active_names());
+  show_matrix("  with forearms as points", M, "Neal 2015, appendix B", answer);
+}
+
+void write_cartesian_mass(const Situation& at, Answer& answer) {
+  if (at.singularity.loses) {
+    answer.undefined("cartesian_mass", "infinite along the direction in which the tool cannot move");
+    return;
+  }
+  const ToolMatrix felt = cartesian_mass(at.J, mass_matrix(at.posture, at.rates));
+  answer.put("cartesian_mass", json_array(felt));
+  if (at.frame.linear() != felt.rows() || at.mechanism.tool_rows() != felt.rows()) return;
+  answer.columns(at.frame.names());
+  answer.cells("apparent mass [g]", apparent_mass(felt).along_axes, kMilli, "free to move sideways");
+}
+
+void write_resolution(const Situation& at, Answer& answer) {
+  if (!at.model.driven()) {
+    answer.undefined("resolution", "some joints have no drive");
+    return;
+  }
+  Json entry;
+  entry["joint"] = json_array(at.model.joint_step());
+  entry["torque"] = json_array(at.model.torque_step());
+  const ToolVector steps = tool_resolution(at.J, at.model.joint_step());
+  entry["position"] = json_array(steps);
+  answer.tool_vector(at.frame, steps, "position step [µm]", 1e6, "angle step [mrad]", kMilli,
+                     "one count in every joint");
+  if (at.J.rows() == at.J.cols() && !at.singularity.loses) {
+    const ToolVector force = force_resolution(at.J, at.model.torque_step());
+    entry["force"] = json_array(force);
+    answer.tool_vector(at.frame, force, "force step [mN]", kMilli, "moment step [mN m]", kMilli,
+                       "one current step in every motor");
+  }
+  answer.put("resolution", entry);
+}
+
+}  // namespace zwidth::at

@@ -1,0 +1,193 @@
+#include <cmath>
+#include <fmt/format.h>
+
+#include "section.h"
+
+#include "zwidth/analysis/dexterity.h"
+#include "zwidth/mechanism/delta.h"
+
+/// Where the joints and the tool are, and how the one moves with the others.
+
+namespace zwidth::at {
+
+void write_joints(const Situation& at, Answer& answer) {
+  Json names = Json::array(), values = Json::array(), passive_names = Json::array(), passive = Json::array();
+  for (int i = 0; i < at.mechanism.active_count(); ++i) {
+    names.push_back(at.mechanism.active_names()[static_cast<size_t>(i)]);
+    values.push_back(json_number(at.posture.active()[i]));
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (int j = 0; j < at.mechanism.joint_count(); ++j) {
+    const JointModel& joint = at.mechanism.joints()[static_cast<size_t>(j)];
+    const bool active = joint.active >= 0;
+    const std::string& name = active ? at.mechanism.active_names()[static_cast<size_t>(joint.active)]
+                                     : at.mechanism.joint_names()[static_cast<size_t>(j)];
+    if (!active) {
+      passive_names.push_back(name);
+      passive.push_back(json_number(at.posture.joints()[j]));
+    }
+    const bool limited = joint.range.width() < 1e6;
+    const std::string range = limited ? fmt::format("{} … {}", joint_text(at.mechanism, j, joint.range.min),
+                                                    joint_text(at.mechanism, j, joint.range.max))
+                                      : "";
+    if (active || answer.wants("passive_joints"))
+      rows.push_back(
+          {name, joint_text(at.mechanism, j, at.posture.joints()[j]), active ? "active" : "passive", range});
+  }
+  answer.page().table({"joint", "value", "", "range"}, rows);
+  answer.put("joint_names", names);
+  answer.put("joints", values);
+  answer.put("passive_joint_names", passive_names);
+  answer.put("passive_joints", passive);
+}
+
+void write_tool_axes(const Situation& at, Answer& answer) {
+  answer.put("tool_axes", at.frame.names());
+}
+
+void write_position(const Situation& at, Answer& answer) {
+  const Vector3 p = at.frame.R * at.posture.tool().position;
+  answer.put("position", json_array(p));
+  answer.axes();
+  answer.cells("position [mm]", p, kMilli, "", 6);
+}
+
+void write_orientation(const Situation& at, Answer& answer) {
+  const Matrix3 R = at.frame.R * at.posture.tool().rotation;
+  answer.put("orientation", json_array(R));
+  if (R.isApprox(at.frame.R, 1e-12)) return;  // the axes of the frame: nothing to show
+  answer.axes();
+  for (int r = 0; r < 3; ++r)
+    answer.cells(r == 0 ? "axes of the tool" : "", R.row(r).transpose(), 1.0, r == 0 ? "in columns" : "");
+}
+
+namespace {
+
+JacobianUnits units_of(const Situation& at) {
+  JacobianUnits units{.linear_rows = at.frame.linear()};
+  for (int i = 0; i < at.mechanism.active_count(); ++i) {
+    if (slides(at.mechanism, at.mechanism.active_joint(i))) units.sliding_joints |= 1U << i;
+  }
+  return units;
+}
+
+}  // namespace
+
+void write_jacobian(const Situation& at, Answer& answer) {
+  answer.put("jacobian", json_array(at.J));
+  answer.columns(at.mechanism.active_names());
+  const std::vector<std::string> names = at.frame.names();
+  const unsigned sliding = units_of(at).sliding_joints;
+  const unsigned all = (1U << at.mechanism.active_count()) - 1U;
+  const char* unit = sliding == 0 ? "[mm/rad]" : sliding == all ? "[mm/mm]" : "[mm/rad, 1]";
+  for (Eigen::Index r = 0; r < at.J.rows(); ++r) {
+    const bool turns = r >= at.frame.linear();
+    // Sliding joints: metres per metre are shown as they are.
+    ActiveVector row = at.J.row(r).transpose();
+    for (Eigen::Index j = 0; j < row.size(); ++j) {
+      if (!turns && (sliding >> j & 1U) == 0) row[j] *= kMilli;
+    }
+    std::string label = r == 0 ? "Jacobian" : "";
+    if (r == 0 || r == at.frame.linear()) label += fmt::format(" {}", turns ? "[rad/rad]" : unit);
+    answer.cells(label, row, 1.0, "d" + names[static_cast<size_t>(r)]);
+  }
+}
+
+void write_dexterity(const Situation& at, Answer& answer) {
+  const JacobianUnits units = units_of(at);
+  if (!units.homogeneous(at.J)) {
+    const std::string reason = "not defined: metres and radians cannot be compared";
+    answer.undefined("condition_number", reason);
+    answer.undefined("manipulability", reason);
+    if (answer.wants("condition_number"))
+      answer.page().row("condition number", "not defined", "metres and radians cannot be compared");
+    return;
+  }
+  const Dexterity figures = dexterity(at.J);
+  if (at.singularity.loses) {
+    answer.undefined("condition_number", "infinite: the Jacobian is singular here");
+  } else {
+    answer.put("condition_number", json_number(figures.condition_number));
+  }
+  const double manipulability = at.singularity.loses ? 0.0 : figures.manipulability;
+  answer.put("manipulability", json_number(manipulability));
+  if (answer.wants("condition_number")) {
+    if (at.singularity.loses) {
+      answer.page().cells("condition number", {"infinite"}, "1 is best");
+    } else {
+      answer.cell("condition number", figures.condition_number, "1 is best");
+    }
+  }
+  if (!answer.wants("manipulability")) return;
+  const int linear = at.frame.linear();
+  const bool metres = linear > 0 && units.sliding_joints == 0;
+  const std::string unit = !metres       ? ""
+                           : linear == 3 ? " [cm³/rad³]"
+                           : linear == 2 ? " [cm²/rad²]"
+                                         : " [cm/rad]";
+  answer.cell("manipulability" + unit, manipulability * (metres ? std::pow(100.0, linear) : 1.0), "√ det J Jᵀ");
+}
+
+void write_singularity(const Situation& at, Answer& answer) {
+  Json entry;
+  entry["closure"] = json_number(at.rates.closure);
+  const bool comparable = units_of(at).homogeneous(at.J);
+  std::string text;
+  if (at.singularity.gains) {
+    entry["kind"] = "the tool gains a freedom";
+    text = "Singular: the tool can move although every joint is held";
+    if (at.singularity.free) {
+      entry["free_direction"] = json_array(*at.singularity.free);
+      text = fmt::format("Singular: the tool can move along ({}) although every joint is held",
+                         direction_text(*at.singularity.free));
+    }
+    text += ". No force can be held along it.";
+  } else if (comparable) {
+    const Dexterity figures = dexterity(at.J);
+    entry["min_singular_value"] = json_number(figures.min_singular_value);
+    entry["max_singular_value"] = json_number(figures.max_singular_value);
+    entry["weak_direction"] = json_array(figures.weak_direction);
+  }
+  if (at.singularity.loses) {
+    entry["kind"] = "the tool loses a freedom";
+    entry["weak_direction"] = json_array(at.singularity.lost);
+    text = fmt::format("Singular: the tool cannot move along ({}); the links bear any force along it.",
+                       direction_text(at.singularity.lost));
+  } else if (!at.singularity.gains && at.status == SolveStatus::degraded) {
+    const bool gains = at.rates.closure < 1e-4;
+    entry["kind"] = gains ? "the tool gains a freedom" : "the tool loses a freedom";
+    text = gains
+               ? "Near a singularity: the tool can move although the joints are held; forces there are hardly "
+                 "controlled."
+               : "Near a singularity: the tool can hardly move one way.";
+    if (!gains && comparable) {
+      text = fmt::format("Near a singularity: the tool can hardly move along ({}).",
+                         direction_text(dexterity(at.J).weak_direction));
+    }
+  }
+  if (!text.empty()) answer.page().paragraph(text, 2, Tint::warning);
+  if (const auto& geometry = at.mechanism.delta()) {
+    const DeltaState state(*geometry, Vector3(at.posture.active()), at.posture.tool().position);
+    entry["legs"] = json_array(state.inverse_singularity());
+    entry["platform"] = json_number(state.direct_singularity());
+    answer.columns(at.mechanism.active_names());
+    answer.cells("distance to leg singularities", state.inverse_singularity(), 1.0, "0: stretched or folded");
+    answer.cell("distance to platform singularity", state.direct_singularity(), "0: the forearms are coplanar");
+  }
+  answer.put("singularity", entry);
+}
+
+void write_motion(const Situation& at, Answer& answer) {
+  if (!at.moving) return;
+  const BiasAcceleration bias = bias_acceleration(at.posture, at.rates, at.rate);
+  const ToolVector v = at.J * at.rate;
+  const ToolVector a = at.J * at.acceleration + at.frame.turn * bias.tool;
+  answer.put("velocity", json_array(v));
+  answer.put("acceleration", json_array(a));
+  if (answer.wants("velocity"))
+    answer.tool_vector(at.frame, v, "velocity [mm/s]", kMilli, "turning [rad/s]", 1.0);
+  if (answer.wants("acceleration"))
+    answer.tool_vector(at.frame, a, "acceleration [m/s²]", 1.0, "turning [rad/s²]", 1.0);
+}
+
+}  // namespace zwidth::at

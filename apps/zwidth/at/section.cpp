@@ -1,0 +1,293 @@
+#include "section.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "zwidth/description/problem.h"
+#include "zwidth/math/svd.h"
+
+namespace zwidth::at {
+
+namespace {
+
+// What rounding leaves of a singularity: roots of differences that cancel are good to the square root of a
+// double's precision.
+constexpr double kRounding = 1e-7;
+
+constexpr const char* kMotion = "give --rate or --acceleration";
+constexpr const char* kLoad = "give --load";
+
+/// Keys of the head, and of the answer to --position; `write_sections` does not write them.
+const std::vector<std::string> kOtherKeys = {"device",    "status",           "frame", "reason", "notes",
+                                             "solutions", "nearest_reachable"};
+/// Questions that a later release answers.
+const std::vector<std::string> kLaterKeys = {"stiffness", "compliance", "natural_frequencies"};
+
+/// The direction that a delta's forearms, coplanar, do not hold. Others leave it open.
+std::optional<ToolVector> free_direction(const Posture& posture, const Frame& frame) {
+  if (!posture.mechanism().delta()) return std::nullopt;
+  Matrix3 R;
+  for (int leg = 0; leg < 3; ++leg) {
+    const LegModel& model = posture.mechanism().legs()[static_cast<size_t>(leg)];
+    R.row(leg) = posture.leg_tip(leg) - posture.joint_point(model.first + 1);
+  }
+  return ToolVector(frame.R * Vector3(svd(R).v.col(2)));
+}
+
+/// Looks for singularities in J, and takes from it what is only rounding.
+Singularity find_singularity(const Posture& posture, const Rates& rates, const Frame& frame, Jacobian& J) {
+  Singularity result;
+  if (!(rates.closure >= kRounding) || !J.allFinite()) {
+    result.gains = true;
+    result.free = free_direction(posture, frame);
+    return result;
+  }
+  const Eigen::Index rows = J.rows(), freedoms = posture.mechanism().tool_rows();
+  if (freedoms > J.cols()) return result;  // too few joints to move every way anyhow
+  // Turning counts as the way of a point at the characteristic length.
+  const double length = posture.mechanism().characteristic_length();
+  const Eigen::Index turning = rows - frame.linear();
+  Jacobian scaled = J;
+  scaled.bottomRows(turning) *= length;
+  auto [u, sigma, v] = svd(scaled);
+  if (sigma[freedoms - 1] > kRounding * length) return result;
+  result.loses = true;
+  result.lost = u.col(freedoms - 1);
+  for (double& value : sigma) value = value > kRounding * length ? value : 0.0;
+  J = u.leftCols(sigma.size()) * sigma.asDiagonal() * v.leftCols(sigma.size()).transpose();
+  J.bottomRows(turning) /= length;
+  const double zero = 1e-12 * J.cwiseAbs().maxCoeff();
+  J = (J.array().abs() <= zero).select(0.0, J);
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> option_values(const char* option, const std::string& text,
+                                  const std::vector<Dimension>& dimensions) {
+  const ParsedQuantities values = parse_quantity_list(text, dimensions);
+  if (!values)
+    throw InputError(fmt::format("{} \"{}\": {}{}", option, text, values.rule,
+                                 values.advice.empty() ? "" : "; " + values.advice));
+  return values.values;
+}
+
+ActiveVector joint_option(const char* option, const std::string& text, const Mechanism& mechanism, int order) {
+  constexpr Dimension kTurns[] = {Dimension::angle, Dimension::angular_speed, Dimension::angular_acceleration};
+  constexpr Dimension kSlides[] = {Dimension::length, Dimension::speed, Dimension::acceleration};
+  std::vector<Dimension> dimensions;
+  for (int i = 0; i < mechanism.active_count(); ++i)
+    dimensions.push_back((slides(mechanism, mechanism.active_joint(i)) ? kSlides : kTurns)[order]);
+  const std::vector<double> values = option_values(option, text, dimensions);
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+int Frame::linear() const {
+  return static_cast<int>(std::count_if(axes.begin(), axes.end(), [](int axis) { return axis < 3; }));
+}
+
+std::vector<std::string> Frame::names() const {
+  static const char* const kNames[] = {"x", "y", "z", "rx", "ry", "rz"};
+  std::vector<std::string> names;
+  for (const int axis : axes) names.emplace_back(kNames[axis]);
+  return names;
+}
+
+Frame frame_of(const Arguments& arguments, const Description& description, const Mechanism& mechanism) {
+  Frame frame;
+  if (arguments.frame == "user") {
+    frame.R = description.to_user;
+  } else if (arguments.frame != "device") {
+    throw InputError(fmt::format("--frame {}: must be \"device\" or \"user\"", arguments.frame));
+  }
+  Matrix6 six = Matrix6::Zero();
+  six.topLeftCorner<3, 3>() = six.bottomRightCorner<3, 3>() = frame.R;
+  const std::span<const int> own = mechanism.tool_axes();
+  ToolMatrix turned(6, static_cast<Eigen::Index>(own.size()));
+  for (size_t c = 0; c < own.size(); ++c) turned.col(static_cast<Eigen::Index>(c)) = six.col(own[c]);
+  for (int axis = 0; axis < 6; ++axis) {
+    if (turned.row(axis).cwiseAbs().maxCoeff() > 1e-9) frame.axes.push_back(axis);
+  }
+  frame.turn.resize(static_cast<Eigen::Index>(frame.axes.size()), turned.cols());
+  for (size_t r = 0; r < frame.axes.size(); ++r)
+    frame.turn.row(static_cast<Eigen::Index>(r)) = turned.row(frame.axes[r]);
+  return frame;
+}
+
+Situation::Situation(const Model& of, const Arguments& arguments, const Frame& user, const Solution& solution)
+    : model(of),
+      mechanism(of.mechanism),
+      posture(*solution.posture),
+      status(solution.status),
+      frame(user),
+      rates(zwidth::rates(posture)),
+      J(frame.turn * rates.tool),
+      singularity(find_singularity(posture, rates, frame, J)),
+      rate(ActiveVector::Zero(mechanism.active_count())),
+      acceleration(rate),
+      moving(!arguments.rate.empty() || !arguments.acceleration.empty()) {
+  if (!arguments.rate.empty()) rate = joint_option("--rate", arguments.rate, mechanism, 1);
+  if (!arguments.acceleration.empty())
+    acceleration = joint_option("--acceleration", arguments.acceleration, mechanism, 2);
+  if (!arguments.load.empty()) {
+    // The force alone, or the moment with it.
+    const auto given = static_cast<int>(std::count(arguments.load.begin(), arguments.load.end(), ',')) + 1;
+    const bool force_alone = frame.linear() > 0 && given <= frame.linear();
+    std::vector<Dimension> dimensions;
+    for (const int axis : frame.axes) {
+      if (axis < 3 || !force_alone) dimensions.push_back(axis < 3 ? Dimension::force : Dimension::torque);
+    }
+    const std::vector<double> values = option_values("--load", arguments.load, dimensions);
+    load = ToolVector::Zero(static_cast<Eigen::Index>(frame.axes.size()));
+    for (size_t i = 0; i < values.size(); ++i) (*load)[static_cast<Eigen::Index>(i)] = values[i];
+  }
+}
+
+const std::vector<Section>& sections() {
+  static const std::vector<Section> table = {
+      {"Joints", {"joint_names", "joints", "passive_joint_names", "passive_joints"}, write_joints},
+      {"Tool", {"tool_axes"}, write_tool_axes},
+      {"Tool", {"position"}, write_position},
+      {"Tool", {"orientation"}, write_orientation},
+      {"Dexterity", {"jacobian"}, write_jacobian, true},
+      {"Dexterity", {"condition_number", "manipulability"}, write_dexterity, true},
+      {"Dexterity", {"singularity"}, write_singularity},
+      {"Motion", {"velocity", "acceleration"}, write_motion, true, kMotion},
+      {"Forces and torques", {"gravity_torques"}, write_gravity, true},
+      {"Forces and torques", {"load", "torques"}, write_torques, true, kLoad},
+      {"Forces and torques", {"force_limits"}, write_force_limits},
+      {"Inertia", {"mass_matrix"}, write_mass_matrix, true},
+      {"Inertia", {"mass_matrix_point_mass"}, write_point_mass, true, "only for a delta"},
+      {"Inertia", {"cartesian_mass"}, write_cartesian_mass, true},
+      {"Resolution", {"resolution"}, write_resolution, true},
+  };
+  return table;
+}
+
+void write_sections(const Situation& situation, Answer& answer) {
+  for (const Section& section : sections()) {
+    const bool wanted = std::any_of(section.keys.begin(), section.keys.end(),
+                                    [&](const char* key) { return answer.wants(key); });
+    if (!wanted) continue;
+    answer.begin(section.heading);
+    if (section.needs_rates && situation.singularity.gains) {
+      for (const char* key : section.keys)
+        answer.undefined(key, "the tool moves although every joint is held: nothing follows from the joints");
+      continue;
+    }
+    section.write(situation, answer);
+  }
+}
+
+void check_only(const std::vector<std::string>& only) {
+  std::vector<std::string> known = kOtherKeys;
+  for (const Section& section : sections()) known.insert(known.end(), section.keys.begin(), section.keys.end());
+  for (const std::string& key : only) {
+    if (std::find(kLaterKeys.begin(), kLaterKeys.end(), key) != kLaterKeys.end())
+      throw InputError(fmt::format("--only {}: is not computed yet", key));
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      throw InputError(fmt::format("--only {}: there is no such key; {}", key, suggest(key, known)));
+  }
+}
+
+bool Answer::wants(const std::string& key) const {
+  return only_.empty() || std::find(only_.begin(), only_.end(), key) != only_.end();
+}
+
+void Answer::undefined(const std::string& key, const std::string& reason) {
+  document_[key] = nullptr;
+  notes_[key] = reason;
+}
+
+void Answer::begin(const std::string& heading) {
+  heading_ = heading;
+}
+
+Sheet& Answer::page() {
+  if (heading_ != shown_heading_) {
+    if (!heading_.empty()) sheet_.heading(heading_);
+    shown_heading_ = heading_;
+    shown_columns_.clear();
+  }
+  return sheet_;
+}
+
+void Answer::columns(const std::vector<std::string>& names) {
+  Sheet& sheet = page();
+  if (names == shown_columns_) return;
+  sheet.cells("", names);
+  shown_columns_ = names;
+}
+
+void Answer::cells(std::string_view label, const Eigen::Ref<const Eigen::VectorXd>& values, double factor,
+                   std::string_view note, int digits, double rounding) {
+  double largest = 0.0;
+  for (const double value : values) {
+    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+  }
+  std::vector<std::string> texts;
+  for (const double value : values)
+    texts.push_back(number(std::abs(value) < rounding * largest ? 0.0 : value * factor, digits));
+  page().cells(label, texts, note);
+}
+
+void Answer::tool_vector(const Frame& frame, const ToolVector& values, std::string_view linear,
+                         double linear_factor, std::string_view angular, double angular_factor,
+                         std::string_view note) {
+  const std::vector<std::string> names = frame.names();
+  const int split = frame.linear();
+  if (split > 0) {
+    columns({names.begin(), names.begin() + split});
+    cells(linear, values.head(split), linear_factor, note);
+  }
+  if (split < values.size()) {
+    columns({names.begin() + split, names.end()});
+    cells(angular, values.tail(values.size() - split), angular_factor, split > 0 ? "" : note);
+  }
+}
+
+void Answer::cell(std::string_view label, double value, std::string_view note) {
+  page().cells(label, {number(value)}, note);
+}
+
+Json Answer::document() const {
+  Json result;
+  for (const auto& [key, value] : document_.items()) {
+    if (key == "device" || key == "status" || wants(key)) result[key] = value;
+  }
+  Json notes;
+  for (const auto& [key, note] : notes_.items()) {
+    if (wants(key)) notes[key] = note;
+  }
+  // Whoever asks for a key by name is told why it is not there.
+  for (const std::string& key : only_) {
+    for (const Section& section : sections()) {
+      const bool its = std::find(section.keys.begin(), section.keys.end(), key) != section.keys.end();
+      if (!its || result.contains(key) || section.otherwise == nullptr) continue;
+      result[key] = nullptr;
+      notes[key] = section.otherwise;
+    }
+  }
+  if (!notes.empty()) result["notes"] = notes;
+  return result;
+}
+
+bool slides(const Mechanism& mechanism, int joint) {
+  return mechanism.joints()[static_cast<size_t>(joint)].type == JointType::prismatic;
+}
+
+std::string joint_text(const Mechanism& mechanism, int joint, double value) {
+  if (std::abs(value) < 1e-12) value = 0.0;  // rounding errors are no angles
+  return slides(mechanism, joint) ? quantity(value, kMilli, "mm", 5)
+                                  : fmt::format("{}°", number(value * kDegrees, 5));
+}
+
+std::string direction_text(const ToolVector& direction) {
+  std::string text;
+  for (const double value : direction)
+    text += fmt::format("{}{:.3f}", text.empty() ? "" : ", ", std::abs(value) < 5e-4 ? 0.0 : value);
+  return text;
+}
+
+}  // namespace zwidth::at

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "figure/field.h"
+
+/// Plots with axes, series and filled maps, as inline SVG.
+
+namespace zwidth {
+
+struct Axis {
+  std::string label;  ///< with its unit
+  Interval range;
+  bool logarithmic = false;
+};
+
+/// A plot in the making. Series are numbered 1..4 and have a colour each.
+class Plot {
+ public:
+  Plot(double width, double height, Axis x, Axis y)
+      : width_(width), height_(height), x_(std::move(x)), y_(std::move(y)) {}
+
+  /// One unit takes the same length along both axes; the plot's height follows. Call it before anything is
+  /// drawn.
+  void keep_shape();
+  void line(const std::vector<Point2>& points, int series, std::string_view label = {}, bool dashed = false);
+  /// Holds each value until the next.
+  void steps(const std::vector<Point2>& points, int series, std::string_view label = {});
+  void dots(const std::vector<Point2>& points, int series, std::string_view label = {});
+  /// Bands of colour within closed curves, and their scale at the right. Call it before anything else is drawn.
+  void map(const Field& field, const std::vector<std::vector<Point2>>& boundary, std::string_view label,
+           Interval range);
+  enum class Side { right_above, left_below };
+  void horizontal(double y, std::string_view text,
+                  Side side = Side::right_above);  ///< a reference line with its name
+  void vertical(double x, std::string_view text);
+  void circle(Point2 centre, double radius, std::string_view text);
+  void rectangle(Point2 centre, double side, std::string_view text);
+  void mark(Point2 point, std::string_view text);
+  void silhouette(const std::vector<std::array<Point2, 3>>& triangles);     ///< their union, as a faint shadow
+  void curves(const std::vector<std::vector<Point2>>& closed, int series);  ///< closed curves, filled
+  /// The figure; `title` is read out by screen readers.
+  std::string svg(std::string_view title) const;
+
+ private:
+  double px(double x) const;
+  double py(double y) const;
+  std::string path(const std::vector<Point2>& points) const;
+  std::string regions(const Field& field, double threshold) const;
+  double right_margin() const { return scale_.empty() ? 14.0 : 66.0; }
+
+  double width_;
+  double height_;
+  Axis x_;
+  Axis y_;
+  std::string body_;
+  std::string over_;   // drawn above the axes
+  std::string scale_;  // colour scale at the right
+  std::vector<std::pair<int, std::string>> legend_;
+};
+
+}  // namespace zwidth

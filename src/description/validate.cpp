@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <numbers>
 #include <set>
 
@@ -107,10 +108,35 @@ class Validator {
   }
 
   void check(const FiveBarDescription& five_bar) {
+    const std::size_t before = problems_.size();
     check_fields(five_bar, "mechanism");
     sign(five_bar.left_mode, "mechanism.left_mode");
     sign(five_bar.right_mode, "mechanism.right_mode");
     sign(five_bar.assembly_mode, "mechanism.assembly_mode");
+    if (problems_.size() > before) return;
+    // The couplers meet where the elbows are at most two of them apart. Between the samples, each crank is at
+    // most half a step away, and its elbow that much times its length.
+    const double reach = 2.0 * five_bar.coupler;
+    constexpr int kSteps = 72;
+    const double left_step = five_bar.left_range.width() / kSteps,
+                 right_step = five_bar.right_range.width() / kSteps;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= kSteps; ++i) {
+      const double left = five_bar.left_range.min + i * left_step;
+      for (int j = 0; j <= kSteps; ++j) {
+        const double right = five_bar.right_range.min + j * right_step;
+        const double across = 2.0 * five_bar.half_base + five_bar.crank * (std::cos(right) - std::cos(left));
+        least = std::min(least, std::hypot(across, five_bar.crank * (std::sin(right) - std::sin(left))));
+      }
+    }
+    const bool too_wide = five_bar.half_base >= five_bar.crank + five_bar.coupler;
+    if (!too_wide && least - 0.5 * five_bar.crank * (left_step + right_step) <= reach) return;
+    wrong("mechanism", "",
+          fmt::format(
+              "never closes: everywhere in left_range and right_range the elbows are {:.4g} m or more apart, "
+              "out of reach of two couplers of {:.4g} m",
+              least, five_bar.coupler),
+          "lengthen coupler, shorten half_base, or turn the ranges towards each other");
   }
 
   void check(const RCubeDescription& r_cube) {

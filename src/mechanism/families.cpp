@@ -14,6 +14,7 @@ struct Overload : Functions... {
 
 std::shared_ptr<const ClosedForm> closed_form_of(const MechanismDescription& mechanism) {
   return std::visit(Overload{[](const DeltaDescription& delta) { return closed_form_of(delta); },
+                             [](const FiveBarDescription& five_bar) { return closed_form_of(five_bar); },
                              [](const auto&) { return std::shared_ptr<const ClosedForm>(); }},
                     mechanism);
 }

@@ -28,5 +28,6 @@ Description spelled_out(const Description& description);
 /// Null where the family has none.
 std::shared_ptr<const ClosedForm> closed_form_of(const MechanismDescription& mechanism);
 std::shared_ptr<const ClosedForm> closed_form_of(const DeltaDescription& delta);
+std::shared_ptr<const ClosedForm> closed_form_of(const FiveBarDescription& five_bar);
 
 }  // namespace zwidth

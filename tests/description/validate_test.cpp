@@ -184,6 +184,31 @@ TEST(Validate, LegsThatCannotMeetAreRefused) {
   EXPECT_TRUE(only_rule(device, "leg[1]").starts_with("never closes"));
 }
 
+TEST(Validate, FiveBarsMustCloseSomewhere) {
+  FiveBarDescription five_bar{
+      .crank = 0.1, .coupler = 0.15, .half_base = 0.03, .left_range = {1.5, 3.6}, .right_range = {-0.5, 1.6}};
+  Description device;
+  device.name = "five-bar";
+  const auto with = [&](const FiveBarDescription& mechanism) {
+    device.mechanism = mechanism;
+    return validate(device);
+  };
+  EXPECT_TRUE(with(five_bar).empty());
+  five_bar.half_base = 0.3;  // the motors too far apart
+  ASSERT_EQ(with(five_bar).size(), 1u);
+  EXPECT_TRUE(only_rule(device, "mechanism").starts_with("never closes"));
+  five_bar.half_base = 0.03;
+  five_bar.coupler = 0.06;  // the cranks turned away from each other
+  five_bar.left_range = {2.8, 3.4};
+  five_bar.right_range = {-0.3, 0.3};
+  with(five_bar);
+  EXPECT_TRUE(only_rule(device, "mechanism").starts_with("never closes"));
+  five_bar.coupler = 0.15;
+  five_bar.left_mode = 0;
+  with(five_bar);
+  EXPECT_EQ(only_rule(device, "mechanism.left_mode"), "must be 1 or -1");
+}
+
 TEST(Validate, InertiasBelongToBodies) {
   Description device = delta();
   Matrix3& inertia = device.bodies[0].inertia;

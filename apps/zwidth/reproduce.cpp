@@ -18,7 +18,7 @@ struct Source {
 };
 
 const std::vector<Source>& sources() {
-  static const std::vector<Source> all = {{"delta", reproduce_delta}};
+  static const std::vector<Source> all = {{"delta", reproduce_delta}, {"five-bar", reproduce_five_bar}};
   return all;
 }
 

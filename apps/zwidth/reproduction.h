@@ -85,5 +85,7 @@ void read_otherwise(ReproducedFigure& figure, std::string reading, std::string l
 
 /// Neal 2015.
 Reproduction reproduce_delta(const Catalogue& catalogue);
+/// Singh, Saha and Manivannan.
+Reproduction reproduce_five_bar(const Catalogue& catalogue);
 
 }  // namespace zwidth

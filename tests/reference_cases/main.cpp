@@ -208,6 +208,7 @@ int run(const std::vector<std::string>& files) {
   Quantities quantities;
   add_delta(quantities);
   add_arm(quantities);
+  add_five_bar(quantities);
   add_actuation(quantities);
   add_r_cube(quantities);
   Tally tally;

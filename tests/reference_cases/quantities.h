@@ -54,6 +54,7 @@ using Quantities = std::map<std::string, Quantity>;
 
 void add_delta(Quantities& quantities);
 void add_arm(Quantities& quantities);
+void add_five_bar(Quantities& quantities);
 void add_actuation(Quantities& quantities);
 void add_r_cube(Quantities& quantities);
 

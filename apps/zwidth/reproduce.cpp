@@ -18,7 +18,8 @@ struct Source {
 };
 
 const std::vector<Source>& sources() {
-  static const std::vector<Source> all = {{"delta", reproduce_delta}, {"five-bar", reproduce_five_bar}};
+  static const std::vector<Source> all = {
+      {"delta", reproduce_delta}, {"five-bar", reproduce_five_bar}, {"r-cube", reproduce_r_cube}};
   return all;
 }
 

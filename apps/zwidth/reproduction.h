@@ -87,5 +87,7 @@ void read_otherwise(ReproducedFigure& figure, std::string reading, std::string l
 Reproduction reproduce_delta(const Catalogue& catalogue);
 /// Singh, Saha and Manivannan.
 Reproduction reproduce_five_bar(const Catalogue& catalogue);
+/// Görgülü 2018.
+Reproduction reproduce_r_cube(const Catalogue& catalogue);
 
 }  // namespace zwidth

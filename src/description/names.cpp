@@ -104,6 +104,9 @@ const std::vector<std::pair<std::string, PlatformFreedom>>& platform_freedom_nam
 std::vector<std::string> link_names(const MechanismDescription& mechanism) {
   std::vector<std::string> names{"platform"};
   if (std::holds_alternative<DeltaDescription>(mechanism)) names.insert(names.end(), {"upper_arm", "forearm"});
+  if (std::holds_alternative<RCubeDescription>(mechanism)) {
+    names.insert(names.end(), {"drive_link", "inner_link", "outer_link"});
+  }
   for (const NamedJoint& joint : joints_of(mechanism)) names.push_back(joint.leg + "/" + joint.joint);
   return names;
 }

@@ -170,12 +170,16 @@ std::vector<TableReference> file_reference() {
           "body",
           {{"on", "string", "required", "names a link",
             "the link that it is fixed to: \"platform\", \"LEG/JOINT\" for the link that this joint moves; a "
-            "delta also has \"upper_arm\" and \"forearm\", for all three legs",
+            "delta also has \"upper_arm\" and \"forearm\", an R-CUBE \"drive_link\", \"inner_link\" and "
+            "\"outer_link\", "
+            "for all three legs",
             "\"platform\""},
            {"mass", "mass [kg]", "required", "must be from 0 to 1000 kg", "mass", "\"80 g\""},
            {"centre", "[x, y, z] length [m]", "[0, 0, 0]", "must be finite",
             "centre of mass at the leg's zero posture, in the base frame; of the platform in its frame; of "
-            "upper_arm and forearm from the link's inner joint, x outwards, z up",
+            "upper_arm and forearm from the link's inner joint, x outwards, z up; of the links of an R-CUBE "
+            "from "
+            "the link's inner joint, x along the axis that the leg drives, z along the link",
             "[\"40 mm\", 0, 0]"},
            {"inertia", "[xx, yy, zz], [xx, yy, zz, xy, xz, yz] or three rows, moment of inertia [kg m^2]", "0",
             "of a possible body: symmetric, positive, no principal moment above the sum of the others",

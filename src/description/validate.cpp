@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
 #include <set>
@@ -140,8 +141,42 @@ class Validator {
   }
 
   void check(const RCubeDescription& r_cube) {
+    const std::size_t before = problems_.size();
     check_fields(r_cube, "mechanism");
     sign(r_cube.elbow_mode, "mechanism.elbow_mode");
+    if (problems_.size() > before) return;
+    // An arm has to span from its universal joint to the tool, (y, z) = (S + l1 sin q_b, S + l1 sin q_c - l1
+    // cos q_a) with all three angles free in the range.
+    const Interval& range = r_cube.joint_range;
+    const auto extremes = [&](auto function, std::initializer_list<double> turning_points) {
+      Interval of{std::min(function(range.min), function(range.max)),
+                  std::max(function(range.min), function(range.max))};
+      for (const double at : turning_points) {
+        if (!range.contains(at)) continue;
+        of = {std::min(of.min, function(at)), std::max(of.max, function(at))};
+      }
+      return of;
+    };
+    constexpr double kPi = std::numbers::pi;
+    const Interval sine = extremes([](double q) { return std::sin(q); }, {-0.5 * kPi, 0.5 * kPi}),
+                   cosine = extremes([](double q) { return std::cos(q); }, {-kPi, 0.0, kPi});
+    const double l1 = r_cube.drive_link, S = r_cube.base_offset;
+    const Interval y{S + l1 * sine.min, S + l1 * sine.max},
+        z{S + l1 * (sine.min - cosine.max), S + l1 * (sine.max - cosine.min)};
+    const auto nearest = [](const Interval& i) { return std::max({i.min, -i.max, 0.0}); };
+    const auto farthest = [](const Interval& i) { return std::max(-i.min, i.max); };
+    const double least = std::hypot(nearest(y), nearest(z)), most = std::hypot(farthest(y), farthest(z));
+    const double longest = r_cube.inner_link + r_cube.outer_link,
+                 shortest = std::abs(r_cube.inner_link - r_cube.outer_link);
+    if (least > longest || most < shortest) {
+      wrong(
+          "mechanism", "",
+          fmt::format("never closes: in joint_range the outer links have to span {:.4g} to {:.4g} m, but reach "
+                      "{:.4g} to {:.4g} m",
+                      least, most, shortest, longest),
+          least > longest ? "lengthen inner_link or outer_link, or widen joint_range"
+                          : "make inner_link and outer_link more alike, or widen joint_range");
+    }
   }
 
   void check(const SerialDescription& arm) {

@@ -11,7 +11,7 @@ struct SolveOptions;
 /// What a closed form answers.
 struct ClosedPosture {
   SolveStatus status =
-      SolveStatus::unreachable;  ///< reached, unreachable or degenerate; the rest is judged later
+      SolveStatus::unreachable;  ///< reached, degraded, unreachable or degenerate; the rest is judged later
   int joint = -1;                ///< joint at fault (index among all joints), -1 if none
   JointVector joints;            ///< all joints of the legs form, empty unless reached [rad] or [m]
   Pose tool;                     ///< platform frame in the base frame

@@ -1,6 +1,7 @@
 #include "zwidth/mechanism/families.h"
 
 #include "zwidth/mechanism/delta.h"
+#include "zwidth/mechanism/r_cube.h"
 
 namespace zwidth {
 namespace {
@@ -15,6 +16,7 @@ struct Overload : Functions... {
 std::shared_ptr<const ClosedForm> closed_form_of(const MechanismDescription& mechanism) {
   return std::visit(Overload{[](const DeltaDescription& delta) { return closed_form_of(delta); },
                              [](const FiveBarDescription& five_bar) { return closed_form_of(five_bar); },
+                             [](const RCubeDescription& r_cube) { return closed_form_of(r_cube); },
                              [](const auto&) { return std::shared_ptr<const ClosedForm>(); }},
                     mechanism);
 }
@@ -27,6 +29,8 @@ Description spelled_out(const Description& description) {
                                 description.mechanism);
   if (const auto* delta = std::get_if<DeltaDescription>(&description.mechanism)) {
     result.bodies = delta_leg_bodies(*delta, description.bodies);
+  } else if (const auto* r_cube = std::get_if<RCubeDescription>(&description.mechanism)) {
+    result.bodies = r_cube_leg_bodies(*r_cube, description.bodies);
   }
   return result;
 }

@@ -29,5 +29,6 @@ Description spelled_out(const Description& description);
 std::shared_ptr<const ClosedForm> closed_form_of(const MechanismDescription& mechanism);
 std::shared_ptr<const ClosedForm> closed_form_of(const DeltaDescription& delta);
 std::shared_ptr<const ClosedForm> closed_form_of(const FiveBarDescription& five_bar);
+std::shared_ptr<const ClosedForm> closed_form_of(const RCubeDescription& r_cube);
 
 }  // namespace zwidth

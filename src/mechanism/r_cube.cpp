@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "zwidth/math/trigonometry.h"
+#include "zwidth/math/vector_trigonometry.h"
 
 namespace zwidth {
 namespace {
@@ -21,63 +22,59 @@ bool within(const Interval& limits, double angle) {
          limits.contains(angle - turn, kLimitTolerance);
 }
 
-// What the two outer links of a leg make of the tool's place (y, z), along e_b and e_c from the universal joint
-// (eq 5.39-5.45).
-struct Arm {
-  bool reaches = false;
-  bool free = false;  // both ends in one place: q2 is left open
-  double q2 = 0.0, q3 = 0.0;
-  double sine = 0.0;  // |sin q3|
-};
-
-Arm solve_arm(const RCubeGeometry& geometry, double y, double z, int sigma) {
-  const double l2 = geometry.inner_link, l3 = geometry.outer_link;
-  const double rho = std::sqrt(y * y + z * z), longest = l2 + l3, shortest = std::abs(l2 - l3);
-  // (l2 + l3)^2 - rho^2 and rho^2 - (l2 - l3)^2 as products of sums: no loss near the limits.
-  const double outer = (longest - rho) * (longest + rho), inner = (rho - shortest) * (rho + shortest);
-  const double slack = -kReachTolerance * longest * longest;
-  Arm arm;
-  if (!(outer >= slack && inner >= slack)) return arm;
-  arm.reaches = true;
-  arm.free = rho <= kDegenerate * longest;
-  const double A = std::max(outer, 0.0), B = std::max(inner, 0.0), root = std::sqrt(A * B);
-  // With A + B = 4 l2 l3, but for what was cut off: cos q3 = (B - A)/(A + B), |sin q3| = 2 sqrt(A B)/(A + B).
-  const double scale = 1.0 / (A + B), cosine = (B - A) * scale;
-  arm.sine = 2.0 * root * scale;
-  const double sine = sigma < 0 ? -arm.sine : arm.sine;
-  const double X = z, Y = -y, along = l2 + l3 * cosine, across = l3 * sine;
-  arm.q3 = angle_of(cosine, sine);
-  arm.q2 = angle_of(along * X + across * Y, along * Y - across * X);
-  return arm;
-}
-
-// Passive angles of all legs from position and levers, and what the posture is worth.
+// Passive angles of all legs from position and levers, and what the posture is worth (eq 5.39-5.45).
 void solve_arms(const RCubeGeometry& geometry, const RCubeBranches& branches, RCubeSolution& solution) {
-  std::array<Arm, 3> arms;
+  const double l2 = geometry.inner_link, l3 = geometry.outer_link, longest = l2 + l3,
+               shortest = std::abs(l2 - l3);
+  // The tool seen from the universal joint, and A = (l2 + l3)^2 - rho^2, B = rho^2 - (l2 - l3)^2 with its
+  // distance rho: as sure as the squares, whose rounding is no larger than that of rho itself.
+  std::array<double, 3> X, Y, A, B;
   for (int i = 0; i < 3; ++i) {
-    const double y = solution.position[r_cube_axis(i, 1)];
-    const double z = solution.position[r_cube_axis(i, 2)] - solution.lever[i];
-    arms[i] = solve_arm(geometry, y, z, branches[i].elbow);
+    X[i] = solution.position[r_cube_axis(i, 2)] - solution.lever[i];
+    Y[i] = -solution.position[r_cube_axis(i, 1)];
+    const double rho2 = X[i] * X[i] + Y[i] * Y[i];
+    A[i] = longest * longest - rho2;
+    B[i] = rho2 - shortest * shortest;
   }
-  bool degraded = false;
-  int free = -1;
+  const double slack = -kReachTolerance * longest * longest;
   for (int i = 0; i < 3; ++i) {
-    if (!arms[i].reaches) {
+    if (!(A[i] >= slack && B[i] >= slack)) {
       solution.status = SolveStatus::unreachable;
       solution.joint = 5 * i + 3;
       return;
     }
-    solution.swing[i] = arms[i].q2;
-    solution.elbow[i] = arms[i].q3;
-    if (arms[i].free && free < 0) free = i;
-    degraded |= arms[i].sine < kDegraded || std::abs(solution.lever[i]) < kDegraded * geometry.drive_link;
   }
-  if (free >= 0) {
-    solution.status = SolveStatus::degenerate;
-    solution.joint = 5 * free + 2;
-    return;
+
+  // Directions of q3 in the first three places, of q2 in the last three, so that one call makes all. With
+  // A + B = 4 l2 l3: cos q3 = (B - A)/(A + B), |sin q3| = 2 sqrt(A B)/(A + B).
+  const double scale = 0.25 / (l2 * l3);
+  std::array<double, 8> cosine{}, sine{}, angle;
+  for (int i = 0; i < 3; ++i) {
+    const double product = A[i] * B[i], root = product > 0.0 ? std::sqrt(product) : 0.0;
+    const double c3 = (B[i] - A[i]) * scale, s3 = branches[i].elbow * (2.0 * root * scale);
+    const double along = l2 + l3 * c3, across = l3 * s3;
+    cosine[i] = c3;
+    sine[i] = s3;
+    cosine[3 + i] = along * X[i] + across * Y[i];
+    sine[3 + i] = along * Y[i] - across * X[i];
   }
-  solution.status = degraded ? SolveStatus::degraded : SolveStatus::reached;
+  angles_of(cosine, sine, angle);
+
+  solution.status = SolveStatus::reached;
+  for (int i = 0; i < 3; ++i) {
+    solution.elbow[i] = angle[i];
+    solution.swing[i] = angle[3 + i];
+    if (std::abs(sine[i]) < kDegraded || std::abs(solution.lever[i]) < kDegraded * geometry.drive_link) {
+      solution.status = SolveStatus::degraded;
+    }
+  }
+  const double together = kDegenerate * longest;
+  for (int i = 2; i >= 0 && shortest <= together; --i) {
+    if (X[i] * X[i] + Y[i] * Y[i] <= together * together) {
+      solution.status = SolveStatus::degenerate;
+      solution.joint = 5 * i + 2;
+    }
+  }
 }
 
 }  // namespace
@@ -85,6 +82,22 @@ void solve_arms(const RCubeGeometry& geometry, const RCubeBranches& branches, RC
 bool RCubeGeometry::valid() const {
   const auto length = [](double l) { return std::isfinite(l) && l > 0.0; };
   return length(drive_link) && length(inner_link) && length(outer_link) && std::isfinite(base_offset);
+}
+
+RCubeGeometry r_cube_geometry(const RCubeDescription& description) {
+  return {.drive_link = description.drive_link,
+          .inner_link = description.inner_link,
+          .outer_link = description.outer_link,
+          .base_offset = description.base_offset};
+}
+
+Eigen::Matrix<double, 5, 1> r_cube_leg_joints(const RCubeSolution& solution, int leg) noexcept {
+  Eigen::Matrix<double, 5, 1> joints;
+  const double q2 = solution.swing[leg], q3 = solution.elbow[leg];
+  // The wrist within half a turn, as the others.
+  joints << solution.theta[leg], -solution.theta[leg], q2, q3,
+      std::remainder(-(q2 + q3), 2.0 * std::numbers::pi);
+  return joints;
 }
 
 RCubeBranches r_cube_branches(int number, int elbow) noexcept {

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include "zwidth/description/description.h"
 #include "zwidth/math/spatial.h"
 #include "zwidth/mechanism/solve_status.h"
 
@@ -12,7 +13,7 @@
 /// 1), (3, 1, 2) for legs 1, 2, 3. Its motor axis passes through S e_a along e_b; at q_i1 = 0 the drive link
 /// points along e_c, and positive angles turn e_c towards e_a. A universal joint undoes that turn and lets the
 /// two outer links swing about e_a: q_i2 between e_c and the inner link, q_i3 at the elbow between the two.
-/// Everything here is noexcept, allocates nothing and works on any lengths.
+/// Everything here is noexcept, allocates nothing and works on any lengths, but for the bodies at the end.
 
 namespace zwidth {
 
@@ -27,6 +28,8 @@ struct RCubeGeometry {
   /// Links finite and longer than zero, offset finite.
   bool valid() const;
 };
+
+RCubeGeometry r_cube_geometry(const RCubeDescription& description);
 
 /// Base axis (0, 1, 2) that leg i in 0..2 calls a (step 0), b (1) and c (2) (eq 5.35-5.37).
 constexpr int r_cube_axis(int leg, int step) {
@@ -50,8 +53,7 @@ RCubeBranches r_cube_branches(int number, int elbow = -1) noexcept;
 struct RCubeSolution {
   SolveStatus status = SolveStatus::unreachable;  ///< reached, degraded, joint_limit, degenerate (a swing is
                                                   ///< free: equal links folded onto each other) or unreachable
-  /// Joint at fault, counted from the base outwards, five a leg: 0 driven, 1 and 2 universal, 3 elbow, 4
-  /// platform; -1 if none.
+  /// Joint at fault, counted leg after leg in the order of `r_cube_leg_joints`; -1 if none.
   int joint = -1;
   Vector3 position = Vector3::Zero();  ///< platform point r [m]
   Vector3 theta = Vector3::Zero();     ///< driven angles q_i1 [rad]
@@ -63,6 +65,10 @@ struct RCubeSolution {
   /// Unreachable because a driven link does not reach, rather than the two links that follow it.
   bool drive_too_short() const { return status == SolveStatus::unreachable && joint >= 0 && joint % 5 == 0; }
 };
+
+/// All joints of one leg in 0..2, from the base outwards: theta, tilt, swing, elbow, wrist (eq 5.10-5.14)
+/// [rad].
+Eigen::Matrix<double, 5, 1> r_cube_leg_joints(const RCubeSolution& solution, int leg) noexcept;
 
 /// Posture of three driven angles [rad], with the elbows on side `branches[i].elbow` (eq 5.28, 5.39-5.45).
 /// Where the outer links of a leg do not reach: unreachable, with position and lever nevertheless.
@@ -133,5 +139,9 @@ class RCubeState {
   Vector3 s1_, c1_, s2_, c2_, s23_, c23_,
       s3_;  // sines and cosines of q_i1, q_i2, q_i2 + q_i3, q_i3 of each leg
 };
+
+/// Bodies of the spelled-out R-CUBE: "drive_link", "inner_link" and "outer_link" become one body per leg.
+std::vector<BodyDescription> r_cube_leg_bodies(const RCubeDescription& r_cube,
+                                               const std::vector<BodyDescription>& bodies);
 
 }  // namespace zwidth

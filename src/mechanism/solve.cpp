@@ -457,6 +457,9 @@ Solution closed_solution(const Mechanism& mechanism, const ClosedPosture& closed
     for (int i = 0; i < rows; ++i) solution.residual = std::max(solution.residual, std::abs(error[i]));
   }
   judge(solution, Closure(posture));
+  if (closed.status == SolveStatus::degraded && solution.status == SolveStatus::reached) {
+    solution.status = SolveStatus::degraded;
+  }
   return solution;
 }
 

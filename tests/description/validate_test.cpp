@@ -209,6 +209,32 @@ TEST(Validate, FiveBarsMustCloseSomewhere) {
   EXPECT_EQ(only_rule(device, "mechanism.left_mode"), "must be 1 or -1");
 }
 
+TEST(Validate, RCubesWhoseArmsNeverReachAreRefused) {
+  Description device;
+  device.name = "r-cube";
+  RCubeDescription r_cube{.drive_link = 0.1117,
+                          .inner_link = 0.0741,
+                          .outer_link = 0.1218,
+                          .base_offset = 0.1117,
+                          .joint_range = {-0.5, 0.5}};
+  const auto rule = [&](double inner, double outer, const Interval& range) {
+    RCubeDescription changed = r_cube;
+    changed.inner_link = inner;
+    changed.outer_link = outer;
+    changed.joint_range = range;
+    device.mechanism = changed;
+    return validate(device).empty() ? std::string() : only_rule(device, "mechanism");
+  };
+  EXPECT_EQ(rule(0.0741, 0.1218, {-0.5, 0.5}), "");
+  EXPECT_TRUE(rule(0.02, 0.03, {-0.5, 0.5}).starts_with("never closes"));  // too short
+  EXPECT_TRUE(rule(0.02, 0.5, {-0.5, 0.5}).starts_with("never closes"));   // cannot fold enough
+  EXPECT_EQ(rule(0.02, 0.04, {-0.5, 0.5}), "");                           // at the inner corner it just reaches
+  EXPECT_TRUE(rule(0.02, 0.04, {0.0, 0.5}).starts_with("never closes"));  // which this range leaves out
+  EXPECT_EQ(rule(0.001, 0.1119, {-3.1, 3.1}), "");                        // turning points inside the range
+  r_cube.elbow_mode = 0;
+  EXPECT_NE(only_rule((device.mechanism = r_cube, device), "mechanism.elbow_mode"), "");
+}
+
 TEST(Validate, InertiasBelongToBodies) {
   Description device = delta();
   Matrix3& inertia = device.bodies[0].inertia;

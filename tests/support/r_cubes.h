@@ -26,6 +26,25 @@ inline RCubeGeometry random_r_cube(std::mt19937_64& random) {
   return geometry;
 }
 
+inline RCubeDescription described(const RCubeGeometry& geometry, const Interval& joint_range,
+                                  int elbow_mode = -1) {
+  return {.drive_link = geometry.drive_link,
+          .inner_link = geometry.inner_link,
+          .outer_link = geometry.outer_link,
+          .base_offset = geometry.base_offset,
+          .joint_range = joint_range,
+          .elbow_mode = elbow_mode};
+}
+
+/// Görgülü 2018, table 7.8.
+inline Description r_cube_device(const RCubeGeometry& geometry = published_r_cube(),
+                                 const Interval& joint_range = {-0.5672, 0.5672}, int elbow_mode = -1) {
+  Description description;
+  description.name = "r-cube";
+  description.mechanism = described(geometry, joint_range, elbow_mode);
+  return description;
+}
+
 inline RCubeBranches random_branches(std::mt19937_64& random) {
   return r_cube_branches(static_cast<int>(random() % kRCubeBranches));
 }

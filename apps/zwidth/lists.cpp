@@ -100,13 +100,30 @@ std::vector<Column> overview<Material>() {
           {"yield MPa", "yield_strength", 1e-6}};
 }
 
+template <>
+std::vector<Column> overview<Cylinder>() {
+  return {{"mm stroke", "stroke", 1e3},
+          {"mm² rear", "rear_area", 1e6},
+          {"mm² rod side", "rod_area", 1e6},
+          {"kPa max", "max_pressure", 1e-3}};
+}
+template <>
+std::vector<Column> overview<Regulator>() {
+  return {
+      {"kPa", "max_pressure", 1e-3}, {"V", "max_command", 1.0}, {"kPa supply", "max_supply_pressure", 1e-3}};
+}
+template <>
+std::vector<Column> overview<Potentiometer>() {
+  return {{"deg", "electrical_angle", 180.0 / 3.14159265358979323846}, {"linearity", "linearity", 1.0}};
+}
+
 class Parts {
  public:
   Parts(const PartsArguments& arguments, const Terminal& terminal) : arguments_(arguments), sheet_(terminal) {}
 
   int run() {
-    const std::vector<std::string> kinds = {"motor", "gearhead", "encoder", "amplifier",
-                                            "cable", "bearing",  "material"};
+    const std::vector<std::string> kinds = {"motor",   "gearhead", "encoder",  "amplifier", "cable",
+                                            "bearing", "material", "cylinder", "regulator", "potentiometer"};
     std::string kind = arguments_.kind;
     if (kind.ends_with('s')) kind.pop_back();
     if (!kind.empty() && std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
@@ -126,6 +143,9 @@ class Parts {
     each<Cable>();
     each<Bearing>();
     each<Material>();
+    each<Cylinder>();
+    each<Regulator>();
+    each<Potentiometer>();
     if (!name_.empty() && found_ == 0) {
       std::vector<std::string> known = known_names_;
       if (kind_.empty()) known.insert(known.end(), kinds.begin(), kinds.end());

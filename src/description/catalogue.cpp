@@ -95,6 +95,9 @@ Catalogue Catalogue::load(const fs::path& directory) {
   catalogue.cables_ = load_parts<Cable>(parts / "cables.toml", problems);
   catalogue.bearings_ = load_parts<Bearing>(parts / "bearings.toml", problems);
   catalogue.materials_ = load_parts<Material>(parts / "materials.toml", problems);
+  catalogue.cylinders_ = load_parts<Cylinder>(parts / "cylinders.toml", problems);
+  catalogue.regulators_ = load_parts<Regulator>(parts / "regulators.toml", problems);
+  catalogue.potentiometers_ = load_parts<Potentiometer>(parts / "potentiometers.toml", problems);
   if (!problems.empty()) throw DescriptionError(std::move(problems));
   catalogue.devices_ = list_devices(directory / "devices");
   return catalogue;
@@ -128,6 +131,18 @@ template <>
 const std::vector<Material>& Catalogue::all<Material>() const {
   return materials_;
 }
+template <>
+const std::vector<Cylinder>& Catalogue::all<Cylinder>() const {
+  return cylinders_;
+}
+template <>
+const std::vector<Regulator>& Catalogue::all<Regulator>() const {
+  return regulators_;
+}
+template <>
+const std::vector<Potentiometer>& Catalogue::all<Potentiometer>() const {
+  return potentiometers_;
+}
 
 template <class Part>
 const Part* Catalogue::find(std::string_view name) const {
@@ -143,6 +158,9 @@ template const Amplifier* Catalogue::find<Amplifier>(std::string_view) const;
 template const Cable* Catalogue::find<Cable>(std::string_view) const;
 template const Bearing* Catalogue::find<Bearing>(std::string_view) const;
 template const Material* Catalogue::find<Material>(std::string_view) const;
+template const Cylinder* Catalogue::find<Cylinder>(std::string_view) const;
+template const Regulator* Catalogue::find<Regulator>(std::string_view) const;
+template const Potentiometer* Catalogue::find<Potentiometer>(std::string_view) const;
 
 fs::path resolve_device(std::string_view device, const Catalogue& catalogue) {
   std::vector<std::string> names;

@@ -28,12 +28,14 @@ class Catalogue {
   /// Nothing in it.
   Catalogue() = default;
 
-  /// Reads DIRECTORY/parts/{motors,gearheads,encoders,amplifiers,cables,bearings,materials}.toml and lists
-  /// DIRECTORY/devices/*.toml. Throws DescriptionError with everything that is wrong in the parts files.
+  /// Reads
+  /// DIRECTORY/parts/{motors,gearheads,encoders,amplifiers,cables,bearings,materials,cylinders,regulators,
+  /// potentiometers}.toml and lists DIRECTORY/devices/*.toml. Throws DescriptionError with everything that is
+  /// wrong in the parts files.
   static Catalogue load(const std::filesystem::path& directory = default_data_directory());
 
-  /// Parts of one kind (Motor, Gearhead, Encoder, Amplifier, Cable, Bearing, Material), in the order of their
-  /// file.
+  /// Parts of one kind (Motor, Gearhead, Encoder, Amplifier, Cable, Bearing, Material, Cylinder, Regulator,
+  /// Potentiometer), in the order of their file.
   template <class Part>
   const std::vector<Part>& all() const;
   /// Null if there is no such part.
@@ -52,6 +54,9 @@ class Catalogue {
   std::vector<Cable> cables_;
   std::vector<Bearing> bearings_;
   std::vector<Material> materials_;
+  std::vector<Cylinder> cylinders_;
+  std::vector<Regulator> regulators_;
+  std::vector<Potentiometer> potentiometers_;
   std::vector<BuiltinDevice> devices_;
 };
 
@@ -69,8 +74,7 @@ struct PartValue {
   std::string source;   ///< of this value: its own, else the part's
 };
 
-/// Every value of a Motor, Gearhead, Encoder, Amplifier, Cable, Bearing or Material, in the order of its
-/// definition.
+/// Every value of a part of any kind, in the order of its definition.
 template <class Part>
 std::vector<PartValue> part_values(const Part& part);
 

@@ -71,6 +71,16 @@ struct RCubeDescription {
   bool operator==(const RCubeDescription&) const = default;
 };
 
+/// What the platform may do.
+enum class PlatformFreedom {
+  translation,  ///< its axes stay parallel to the base frame's (held so by parallelograms or equal joints)
+  rigid,        ///< all six degrees of freedom, less what the legs forbid
+  planar_translation,  ///< x and y: the tool is a point of a plane, its orientation means nothing
+  planar,              ///< x, y, and turning about z
+  rotation,            ///< turning about a fixed point
+  point,               ///< x, y and z: the tool is a point of the first leg's last link, which turns as it must
+};
+
 enum class SerialJointType {
   revolute,   ///< its value adds to theta
   prismatic,  ///< its value adds to d
@@ -88,6 +98,8 @@ struct SerialJointDescription {
   Interval range{-1e9, 1e9};  ///< [rad] or [m]
   double home = 0.0;          ///< value in the home posture [rad] or [m]
   bool free = false;          ///< moved by the hand, not by a drive
+  std::string source = {};    ///< where the values come from, if not from the mechanism's source
+  Sources sources = {};
 
   bool operator==(const SerialJointDescription&) const = default;
 };
@@ -95,6 +107,9 @@ struct SerialJointDescription {
 /// A serial arm. Its one leg is called "arm"; the tool frame is that of the last row.
 struct SerialDescription {
   std::vector<SerialJointDescription> joints;  ///< rows from the base to the tool
+  /// What of the tool frame the device is there to move and push: `point` for an arm that only positions,
+  /// however the hand turns its end.
+  PlatformFreedom platform = PlatformFreedom::rigid;
   std::string source;
   Sources sources = {};
 
@@ -141,15 +156,6 @@ struct LegDescription {
   Matrix3 platform_rotation = Matrix3::Identity();
 
   bool operator==(const LegDescription&) const = default;
-};
-
-/// What the platform may do.
-enum class PlatformFreedom {
-  translation,  ///< its axes stay parallel to the base frame's (held so by parallelograms or equal joints)
-  rigid,        ///< all six degrees of freedom, less what the legs forbid
-  planar_translation,  ///< x and y: the tool is a point of a plane, its orientation means nothing
-  planar,              ///< x, y, and turning about z
-  rotation,            ///< turning about a fixed point
 };
 
 /// Any mechanism: legs from the base to one platform, whose frame carries the tool at its origin.
@@ -280,6 +286,53 @@ struct DriveDescription {
   bool operator==(const DriveDescription&) const = default;
 };
 
+/// Where the pins of a cylinder are that turns an arm (Akhoondi Asadi 2017, section 3.1). In the plane of the
+/// joint, with the pivot at the origin, the arm along +x at joint angle zero, and angles counter-clockwise.
+enum class ArmCylinderLayout {
+  one,      ///< base pin at (0, -l1), arm pin at l2 along the arm: lengthens as the angle grows
+  two,      ///< base pin at (l0, -l1), arm pin at l2: lengthens
+  two_mod,  ///< base pin at (l0, l1), arm pin at l2: the mirror image of `two`, shortens
+  three,    ///< base pin at (-l2, h), arm pin at l0 along and l1 across the arm: shortens
+};
+
+/// A cylinder that turns an arm. The thesis' letters stand, for their meaning changes with the layout.
+struct ArmCylinderDescription {
+  ArmCylinderLayout layout = ArmCylinderLayout::one;
+  double l0 = 0.0;                ///< [m]; not in `one`
+  double l1 = 0.0;                ///< [m]
+  double l2 = 0.0;                ///< [m]
+  double h = 0.0;                 ///< [m]; only in `three`
+  double retracted_length = 0.0;  ///< pin to pin with the rod in [m]
+  std::string source = {};
+  Sources sources = {};
+
+  bool operator==(const ArmCylinderDescription&) const = default;
+};
+
+/// No linkage: the rod is the sliding joint.
+struct DirectCylinderDescription {
+  bool operator==(const DirectCylinderDescription&) const = default;
+};
+
+using CylinderMountDescription = std::variant<DirectCylinderDescription, ArmCylinderDescription>;
+
+/// Cylinder + two regulators + potentiometer of one or several active joints. Pressures are gauge.
+struct PneumaticDriveDescription {
+  std::vector<std::string> joints;  ///< names of active joints; empty means every active joint
+  Cylinder cylinder;
+  Regulator regulator;                         ///< one for each chamber
+  std::optional<Potentiometer> potentiometer;  ///< of the joint's angle
+  double supply_pressure = 0.0;                ///< [Pa]
+  double bias_pressure = 0.0;                  ///< of the chamber that works against the wanted force [Pa]
+  double sensor_voltage = 0.0;                 ///< across the potentiometer [V]; 0 when not given
+  double sensor_step = 0.0;  ///< smallest step of its output that is read [V]; 0 when not given
+  CylinderMountDescription mount;
+  std::string source;
+  Sources sources = {};
+
+  bool operator==(const PneumaticDriveDescription&) const = default;
+};
+
 // -------------------------------------------------------------------------------------------------- device
 
 struct Description {
@@ -291,7 +344,8 @@ struct Description {
       Matrix3::Identity();  ///< turns base coordinates into the user's: x to the user, y right, z up
   MechanismDescription mechanism;
   std::vector<BodyDescription> bodies;
-  std::vector<DriveDescription> drives;
+  std::vector<DriveDescription> drives;                     ///< electric ones
+  std::vector<PneumaticDriveDescription> pneumatic_drives;  ///< files give both kinds as [[drive]]
   Sources sources = {};
 
   bool operator==(const Description&) const = default;

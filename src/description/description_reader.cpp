@@ -100,12 +100,17 @@ SerialJointDescription read_serial_joint(TableReader& table) {
                      .value_or(joint.range.contains(0.0) ? 0.0 : joint.range.middle());
     joint.free = table.flag("free", Need::optional).value_or(false);
   }
+  table.read_sources(joint.source, joint.sources, Need::optional);
   table.finish();
   return joint;
 }
 
 SerialDescription read_serial(TableReader& table, TableReader& device) {
   SerialDescription arm;
+  if (const auto platform =
+          table.choice<PlatformFreedom>("platform", platform_freedom_names(), Need::optional)) {
+    arm.platform = *platform;
+  }
   table.read_sources(arm.source, arm.sources, Need::optional);
   table.finish();
   for (TableReader& joint : device.tables("joint")) arm.joints.push_back(read_serial_joint(joint));
@@ -254,16 +259,50 @@ std::optional<Interval> range_of_driven_joint(const MechanismDescription& mechan
   return ranges[static_cast<std::size_t>(driven.front())];
 }
 
+// Names of the joints of a drive; empty for all.
+std::vector<std::string> read_joints(TableReader& drive) {
+  auto joints = drive.texts("joints", "write \"all\" or a list of names");
+  if (!joints || *joints == std::vector<std::string>{"all"}) return {};
+  if (joints->empty())
+    drive.report("joints", "names no joint", "write \"all\", or leave it out, for every active joint");
+  return std::move(*joints);
+}
+
+CylinderMountDescription read_mount(TableReader& drive) {
+  std::optional<TableReader> table =
+      drive.table("mount", Need::optional, "write mount = { layout = \"two\", l1 = ..., ... }");
+  if (!table) return DirectCylinderDescription{};
+  ArmCylinderDescription mount{.layout = ArmCylinderLayout::three};  // which has every length
+  if (const auto layout =
+          table->choice<ArmCylinderLayout>("layout", arm_cylinder_layout_names(), Need::required)) {
+    mount.layout = *layout;
+  }
+  table->read(mount);
+  table->read_sources(mount.source, mount.sources, Need::optional);
+  table->finish();
+  return mount;
+}
+
+PneumaticDriveDescription read_pneumatic_drive(TableReader& table, const Catalogue& catalogue) {
+  PneumaticDriveDescription drive;
+  drive.joints = read_joints(table);
+  if (table.has("motor")) table.report("motor", "stands beside a cylinder", "give the drive one of the two");
+  drive.cylinder = read_part<Cylinder>(table, "cylinder", catalogue);
+  drive.regulator = read_part<Regulator>(table, "regulator", catalogue);
+  if (table.has("potentiometer")) {
+    drive.potentiometer = read_part<Potentiometer>(table, "potentiometer", catalogue);
+  }
+  table.read(drive);
+  drive.mount = read_mount(table);
+  table.read_sources(drive.source, drive.sources, Need::optional);
+  table.finish();
+  return drive;
+}
+
 DriveDescription read_drive(TableReader& table, const Catalogue& catalogue,
                             const MechanismDescription& mechanism) {
   DriveDescription drive;
-  if (auto joints = table.texts("joints", "write \"all\" or a list of names")) {
-    if (*joints != std::vector<std::string>{"all"}) {
-      if (joints->empty())
-        table.report("joints", "names no joint", "write \"all\", or leave it out, for every active joint");
-      drive.joints = std::move(*joints);
-    }
-  }
+  drive.joints = read_joints(table);
   drive.motor = read_part<Motor>(table, "motor", catalogue);
   drive.encoder = read_part<Encoder>(table, "encoder", catalogue);
   drive.amplifier = read_part<Amplifier>(table, "amplifier", catalogue);
@@ -299,7 +338,14 @@ Description read_device_tables(Input& input, const Catalogue& catalogue) {
   description.mechanism = read_mechanism(file);
   for (TableReader& body : file.tables("body")) description.bodies.push_back(read_body(body));
   for (TableReader& drive : file.tables("drive")) {
-    description.drives.push_back(read_drive(drive, catalogue, description.mechanism));
+    // What `validate` says of a drive by its place in the description belongs to its place in the file.
+    if (drive.has("cylinder")) {
+      input.alias(join_path("pneumatic_drive", description.pneumatic_drives.size()), drive.path());
+      description.pneumatic_drives.push_back(read_pneumatic_drive(drive, catalogue));
+    } else {
+      input.alias(join_path("drive", description.drives.size()), drive.path());
+      description.drives.push_back(read_drive(drive, catalogue, description.mechanism));
+    }
   }
   file.finish();
   return description;

@@ -385,9 +385,17 @@ bool Input::faulty(const std::string& path) const {
   });
 }
 
+void Input::alias(std::string path, std::string in_file) {
+  aliases_[std::move(path)] = std::move(in_file);
+}
+
 void Input::add_value_problems(const std::vector<Problem>& problems) {
   std::vector<Problem> placed;
-  for (const Problem& problem : problems) {
+  for (Problem problem : problems) {
+    const std::size_t table = std::min(problem.key.find('.'), problem.key.size());
+    if (const auto known = aliases_.find(problem.key.substr(0, table)); known != aliases_.end()) {
+      problem.key = known->second + problem.key.substr(table);
+    }
     if (faulty(problem.key)) continue;
     placed.push_back(problem);
     placed.back().value.clear();  // what the user wrote says more than its SI value

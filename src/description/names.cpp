@@ -13,6 +13,7 @@ struct NamedJoint {
   bool active = false;
   Interval range = {};  // of an active joint
   bool free = false;
+  bool slides = false;
 };
 
 // Three equal legs whose first joint is the driven one.
@@ -45,7 +46,8 @@ std::vector<NamedJoint> joints_of(const SerialDescription& arm) {
   std::vector<NamedJoint> joints;
   for (const SerialJointDescription& joint : arm.joints) {
     if (joint.type != SerialJointType::fixed)
-      joints.push_back({"arm", joint.name, true, joint.range, joint.free});
+      joints.push_back(
+          {"arm", joint.name, true, joint.range, joint.free, joint.type == SerialJointType::prismatic});
   }
   return joints;
 }
@@ -54,7 +56,8 @@ std::vector<NamedJoint> joints_of(const LegsDescription& legs) {
   std::vector<NamedJoint> joints;
   for (const LegDescription& leg : legs.legs) {
     for (const JointDescription& joint : leg.joints) {
-      joints.push_back({leg.name, joint.name, joint.active, joint.range, joint.free});
+      joints.push_back(
+          {leg.name, joint.name, joint.active, joint.range, joint.free, joint.type == JointType::prismatic});
     }
   }
   return joints;
@@ -62,6 +65,29 @@ std::vector<NamedJoint> joints_of(const LegsDescription& legs) {
 
 std::vector<NamedJoint> joints_of(const MechanismDescription& mechanism) {
   return std::visit([](const auto& family) { return joints_of(family); }, mechanism);
+}
+
+const NamedJoint* active_joint(const std::vector<NamedJoint>& joints, int active) {
+  int index = 0;
+  for (const NamedJoint& joint : joints) {
+    if (joint.active && index++ == active) return &joint;
+  }
+  return nullptr;
+}
+
+// Indices of the named joints; without names, of all that are not free.
+std::vector<int> joint_indices(const MechanismDescription& mechanism, const std::vector<std::string>& names) {
+  std::vector<int> indices;
+  if (names.empty()) {
+    int index = 0;
+    for (const NamedJoint& joint : joints_of(mechanism)) {
+      if (joint.active && !joint.free) indices.push_back(index);
+      if (joint.active) ++index;
+    }
+    return indices;
+  }
+  for (const std::string& name : names) indices.push_back(active_joint_index(mechanism, name));
+  return indices;
 }
 
 }  // namespace
@@ -97,8 +123,25 @@ const std::vector<std::pair<std::string, PlatformFreedom>>& platform_freedom_nam
       {"rigid", PlatformFreedom::rigid},
       {"planar-translation", PlatformFreedom::planar_translation},
       {"planar", PlatformFreedom::planar},
-      {"rotation", PlatformFreedom::rotation}};
+      {"rotation", PlatformFreedom::rotation},
+      {"point", PlatformFreedom::point}};
   return names;
+}
+
+const std::vector<std::pair<std::string, ArmCylinderLayout>>& arm_cylinder_layout_names() {
+  static const std::vector<std::pair<std::string, ArmCylinderLayout>> names = {
+      {"one", ArmCylinderLayout::one},
+      {"two", ArmCylinderLayout::two},
+      {"two_mod", ArmCylinderLayout::two_mod},
+      {"three", ArmCylinderLayout::three}};
+  return names;
+}
+
+std::string to_string(ArmCylinderLayout layout) {
+  for (const auto& [name, value] : arm_cylinder_layout_names()) {
+    if (value == layout) return name;
+  }
+  return {};
 }
 
 std::vector<std::string> link_names(const MechanismDescription& mechanism) {
@@ -112,11 +155,15 @@ std::vector<std::string> link_names(const MechanismDescription& mechanism) {
 }
 
 bool is_free_joint(const MechanismDescription& mechanism, int active) {
-  int index = 0;
-  for (const NamedJoint& joint : joints_of(mechanism)) {
-    if (joint.active && index++ == active) return joint.free;
-  }
-  return false;
+  const std::vector<NamedJoint> joints = joints_of(mechanism);
+  const NamedJoint* joint = active_joint(joints, active);
+  return joint != nullptr && joint->free;
+}
+
+bool is_sliding_joint(const MechanismDescription& mechanism, int active) {
+  const std::vector<NamedJoint> joints = joints_of(mechanism);
+  const NamedJoint* joint = active_joint(joints, active);
+  return joint != nullptr && joint->slides;
 }
 
 int active_joint_index(const MechanismDescription& mechanism, const std::string& name) {
@@ -131,17 +178,11 @@ int active_joint_index(const MechanismDescription& mechanism, const std::string&
 }
 
 std::vector<int> driven_joints(const MechanismDescription& mechanism, const DriveDescription& drive) {
-  std::vector<int> indices;
-  if (drive.joints.empty()) {
-    int index = 0;
-    for (const NamedJoint& joint : joints_of(mechanism)) {
-      if (joint.active && !joint.free) indices.push_back(index);
-      if (joint.active) ++index;
-    }
-    return indices;
-  }
-  for (const std::string& name : drive.joints) indices.push_back(active_joint_index(mechanism, name));
-  return indices;
+  return joint_indices(mechanism, drive.joints);
+}
+
+std::vector<int> driven_joints(const MechanismDescription& mechanism, const PneumaticDriveDescription& drive) {
+  return joint_indices(mechanism, drive.joints);
 }
 
 std::string_view transmission_type(const TransmissionDescription& transmission) {

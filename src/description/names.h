@@ -26,6 +26,10 @@ std::vector<Interval> active_joint_ranges(const MechanismDescription& mechanism)
 /// "translation", "rigid", ...: every platform freedom as files call it.
 const std::vector<std::pair<std::string, PlatformFreedom>>& platform_freedom_names();
 
+/// "one", "two", "two_mod", "three": every layout of a cylinder on an arm as files call it.
+const std::vector<std::pair<std::string, ArmCylinderLayout>>& arm_cylinder_layout_names();
+std::string to_string(ArmCylinderLayout layout);
+
 /// Every name that `BodyDescription::on` may have.
 std::vector<std::string> link_names(const MechanismDescription& mechanism);
 
@@ -38,8 +42,12 @@ bool is_free_joint(const MechanismDescription& mechanism, int active);
 /// A transmission's type as device files write it: "direct", "capstan", "ratio" or "gearhead".
 std::string_view transmission_type(const TransmissionDescription& transmission);
 
+/// Whether an active joint slides.
+bool is_sliding_joint(const MechanismDescription& mechanism, int active);
+
 /// Indices in `active_joint_names` of the joints that a drive moves: all but the free ones if it names none.
 /// REQUIRES: the drive names active joints only, as `validate` sees to.
 std::vector<int> driven_joints(const MechanismDescription& mechanism, const DriveDescription& drive);
+std::vector<int> driven_joints(const MechanismDescription& mechanism, const PneumaticDriveDescription& drive);
 
 }  // namespace zwidth

@@ -54,6 +54,15 @@ bool Bearing::operator==(const Bearing& other) const {
 bool Material::operator==(const Material& other) const {
   return equal(*this, other);
 }
+bool Cylinder::operator==(const Cylinder& other) const {
+  return equal(*this, other);
+}
+bool Regulator::operator==(const Regulator& other) const {
+  return equal(*this, other);
+}
+bool Potentiometer::operator==(const Potentiometer& other) const {
+  return equal(*this, other);
+}
 
 template <>
 std::string_view part_kind<Motor>() {
@@ -82,6 +91,18 @@ std::string_view part_kind<Bearing>() {
 template <>
 std::string_view part_kind<Material>() {
   return "material";
+}
+template <>
+std::string_view part_kind<Cylinder>() {
+  return "cylinder";
+}
+template <>
+std::string_view part_kind<Regulator>() {
+  return "regulator";
+}
+template <>
+std::string_view part_kind<Potentiometer>() {
+  return "potentiometer";
 }
 
 template <class Part>
@@ -145,6 +166,9 @@ ZWIDTH_INSTANTIATE(Amplifier)
 ZWIDTH_INSTANTIATE(Cable)
 ZWIDTH_INSTANTIATE(Bearing)
 ZWIDTH_INSTANTIATE(Material)
+ZWIDTH_INSTANTIATE(Cylinder)
+ZWIDTH_INSTANTIATE(Regulator)
+ZWIDTH_INSTANTIATE(Potentiometer)
 #undef ZWIDTH_INSTANTIATE
 
 }  // namespace zwidth

@@ -144,4 +144,47 @@ struct Material {
   bool operator==(const Material& other) const;  ///< values not given are equal
 };
 
+/// A double-acting air cylinder with one rod.
+struct Cylinder {
+  PartInfo info;
+  double stroke = 0.0;              ///< [m]
+  double bore = kNotGiven;          ///< [m]
+  double rear_area = 0.0;           ///< of the piston on the closed side A1 [m^2]
+  double rod_area = 0.0;            ///< of the piston on the rod's side A2 [m^2]
+  double max_pressure = 0.0;        ///< gauge [Pa]
+  double breakaway_pressure = 0.0;  ///< pressure difference that just moves the piston [Pa]; 0 when not given
+  double friction_share = 0.0;      ///< piston friction per force; 0 when not given
+  double moving_mass = 0.0;         ///< piston and rod [kg]; 0 when not given
+  double mass = kNotGiven;          ///< the whole cylinder [kg]
+
+  bool operator==(const Cylinder& other) const;  ///< values not given are equal
+};
+
+/// A proportional pressure regulator: a voltage commands a chamber's pressure, another reports it.
+struct Regulator {
+  PartInfo info;
+  double min_pressure = 0.0;         ///< gauge, at the least command [Pa]
+  double max_pressure = 0.0;         ///< gauge, at the largest command [Pa]
+  double min_command = 0.0;          ///< [V]
+  double max_command = 0.0;          ///< [V]
+  double min_monitor = kNotGiven;    ///< of the reported pressure, at min_pressure [V]
+  double max_monitor = kNotGiven;    ///< at max_pressure [V]
+  double max_supply_pressure = 0.0;  ///< gauge [Pa]
+  double linearity = kNotGiven;      ///< largest deviation per span [-]
+  double response_time = kNotGiven;  ///< to a step of the command [s]
+
+  bool operator==(const Regulator& other) const;  ///< values not given are equal
+};
+
+/// A rotary potentiometer as an angle sensor.
+struct Potentiometer {
+  PartInfo info;
+  double electrical_angle = 0.0;       ///< over which the voltage rises from zero to that applied [rad]
+  double linearity = kNotGiven;        ///< largest deviation per voltage applied [-]
+  double max_voltage = kNotGiven;      ///< that may be applied [V]
+  double friction_torque = kNotGiven;  ///< [N m]
+
+  bool operator==(const Potentiometer& other) const;  ///< values not given are equal
+};
+
 }  // namespace zwidth

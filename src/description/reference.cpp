@@ -102,6 +102,7 @@ TableReference serial_joint_table() {
   joint.keys.push_back({"home", "angle [rad] or length [m]", "0, or the middle of the range",
                         "must be in the range", "value in the home posture", "\"45 deg\""});
   joint.keys.push_back({"free", "true or false", "false", "has no drive", "whether the hand moves it", "true"});
+  joint.keys.insert(joint.keys.end(), kSourceKeys.begin(), kSourceKeys.end());
   return joint;
 }
 
@@ -124,15 +125,23 @@ std::vector<TableReference> file_reference() {
                                 {{"type", "string", "required", "", "the kind of mechanism", "\"five-bar\""}}),
       table<RCubeDescription>("r-cube",
                               {{"type", "string", "required", "", "the kind of mechanism", "\"r-cube\""}}),
-      table<void>("serial", {{"type", "string", "required", "", "the kind of mechanism", "\"serial\""}}),
+      table<void>("serial",
+                  {{"type", "string", "required", "", "the kind of mechanism", "\"serial\""},
+                   {"platform", "as of legs", "\"rigid\"", "",
+                    "what the tool is: the whole frame of the last row, or its \"point\" where the arm "
+                    "only positions",
+                    "\"point\""}}),
       serial_joint_table(),
-      table<void>("legs", {{"type", "string", "required", "", "the kind of mechanism", "\"legs\""},
-                           {"platform",
-                            "\"translation\", \"rigid\", \"planar-translation\", \"planar\" or \"rotation\"",
-                            "required", "",
-                            "what the platform may do: keep its axes parallel to the base's, move freely, move "
-                            "as a point in x and y, move in x and y and turn about z, or turn about a point",
-                            "\"translation\""}}),
+      table<void>(
+          "legs",
+          {{"type", "string", "required", "", "the kind of mechanism", "\"legs\""},
+           {"platform",
+            "\"translation\", \"rigid\", \"planar-translation\", \"planar\", \"rotation\" or \"point\"",
+            "required", "",
+            "what the platform may do: keep its axes parallel to the base's, move freely, move "
+            "as a point in x and y, move in x and y and turn about z, turn about a point, or move as a point "
+            "in x, y and z that turns as it must",
+            "\"translation\""}}),
       {.name = "leg",
        .keys = {{"name", "string", "required", "differs from leg to leg, has no '/'",
                  "what joints and links refer to", "\"leg1\""},
@@ -197,6 +206,19 @@ std::vector<TableReference> file_reference() {
            {"preloader", "table", "none", "", "spring that keeps the cable tight; see `preloader`", ""},
            {"output", "table", "none", "", "what the drive moves, for its frequency response; see `output`",
             ""}}),
+      table<PneumaticDriveDescription>(
+          "pneumatic-drive",
+          {{"joints", "\"all\", a name or a list of names", "\"all\"", "active joints, each with one drive",
+            "the joints that have this drive, one each", "[\"theta1\"]"},
+           part_key("cylinder", "\"airpel-m9d12.5u\""),
+           part_key("regulator", "\"smc-itv0030-3ums\"")},
+          {{"potentiometer", "name of a potentiometer, or table with `base`", "not given",
+            "is in the catalogue", "the potentiometer on the joint; see parts", "\"bourns-3382\""},
+           {"mount", "table", "the rod is the joint, which slides", "of a joint that turns; see `mount`",
+            "where the cylinder's pins are", ""}}),
+      table<ArmCylinderDescription>("mount",
+                                    {{"layout", "\"one\", \"two\", \"two_mod\" or \"three\"", "required", "",
+                                      "how the cylinder lies between base and arm", "\"two\""}}),
       table<CapstanDescription>("capstan",
                                 {{"type", "string", "required", "", "the kind of transmission", "\"capstan\""}},
                                 {part_key("cable", "\"7x19-nylon-0.762\"")}),
@@ -214,6 +236,9 @@ std::vector<TableReference> file_reference() {
       part_table<Cable>("cable"),
       part_table<Bearing>("bearing"),
       part_table<Material>("material"),
+      part_table<Cylinder>("cylinder"),
+      part_table<Regulator>("regulator"),
+      part_table<Potentiometer>("potentiometer"),
   };
 }
 

@@ -16,6 +16,7 @@ constexpr Bounds kPositive{.min = 0.0, .above_min = true};
 constexpr Bounds kNotNegative{.min = 0.0};
 // Longer is a forgotten unit: a plain 80 is 80 m.
 constexpr Bounds kLinkLength{.min = 0.0, .max = 10.0, .above_min = true};
+constexpr Bounds kCoordinate{.min = -10.0, .max = 10.0};
 constexpr Bounds kRadius{.min = 0.0, .max = 10.0};
 constexpr Bounds kSmallLength{.min = 0.0, .max = 1.0, .above_min = true};
 constexpr Bounds kAtLeastOne{.min = 1.0};
@@ -25,6 +26,8 @@ constexpr Bounds kWithinTurn{.min = -2.0 * kHalfTurn, .max = 2.0 * kHalfTurn};
 constexpr Bounds kOffset{.min = -10.0, .max = 10.0};  // [m]
 constexpr Bounds kSign{.min = -1.0, .max = 1.0};      // 0 is refused by `validate`
 constexpr Bounds kUpToTurn{.min = 0.0, .max = 2.0 * kHalfTurn};
+constexpr Bounds kTurn{.min = 0.0, .max = 2.0 * kHalfTurn, .above_min = true};
+constexpr Bounds kNotBelowVacuum{.min = -101325.0};
 constexpr Bounds kPoisson{.min = -1.0, .max = 0.5, .above_min = true};
 
 bool bare_key(std::string_view key) {
@@ -224,6 +227,71 @@ std::span<const Field<Material>> fields<Material>() {
 }
 
 template <>
+std::span<const Field<Cylinder>> fields<Cylinder>() {
+  static const Field<Cylinder> list[] = {
+      {"stroke", &Cylinder::stroke, length, kSmallLength, required, "way of the rod", "\"12.5 mm\""},
+      {"bore", &Cylinder::bore, length, kSmallLength, optional, "diameter of the piston", "\"0.366 in\""},
+      {"rear_area", &Cylinder::rear_area, area, kPositive, required, "area of the piston on the closed side",
+       "\"0.105 in^2\""},
+      {"rod_area", &Cylinder::rod_area, area, kPositive, required,
+       "area of the piston on the rod's side, less the rod", "\"0.093 in^2\""},
+      {"max_pressure", &Cylinder::max_pressure, pressure, kPositive, required, "highest pressure, gauge",
+       "\"100 psi\""},
+      {"breakaway_pressure", &Cylinder::breakaway_pressure, pressure, kNotNegative, optional,
+       "least pressure difference that moves the piston", "\"0.2 psi\""},
+      {"friction_share", &Cylinder::friction_share, number, kNotNegative, optional,
+       "friction of the piston per force", "0.015"},
+      {"moving_mass", &Cylinder::moving_mass, mass, kNotNegative, optional, "mass of piston and rod",
+       "\"5.2 g\""},
+      {"mass", &Cylinder::mass, mass, kPositive, optional, "mass of the whole cylinder", "\"36 g\""},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<Regulator>> fields<Regulator>() {
+  static const Field<Regulator> list[] = {
+      {"min_pressure", &Regulator::min_pressure, pressure, kNotBelowVacuum, required,
+       "pressure at the least command, gauge", "\"1 kPa\""},
+      {"max_pressure", &Regulator::max_pressure, pressure, kPositive, required,
+       "pressure at the largest command, gauge", "\"500 kPa\""},
+      {"min_command", &Regulator::min_command, voltage, {}, optional, "least command", "0"},
+      {"max_command", &Regulator::max_command, voltage, kPositive, required, "largest command", "\"10 V\""},
+      {"min_monitor",
+       &Regulator::min_monitor,
+       voltage,
+       {},
+       optional,
+       "monitor output at the least pressure",
+       "\"1 V\""},
+      {"max_monitor", &Regulator::max_monitor, voltage, kPositive, optional,
+       "monitor output at the highest pressure", "\"5 V\""},
+      {"max_supply_pressure", &Regulator::max_supply_pressure, pressure, kPositive, required,
+       "highest supply pressure, gauge", "\"1 MPa\""},
+      {"linearity", &Regulator::linearity, number, kShare, optional,
+       "largest deviation from a straight line, per span", "0.01"},
+      {"response_time", &Regulator::response_time, time, kPositive, optional,
+       "time to follow a step of the command", "\"0.1 s\""},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<Potentiometer>> fields<Potentiometer>() {
+  static const Field<Potentiometer> list[] = {
+      {"electrical_angle", &Potentiometer::electrical_angle, angle, kTurn, required,
+       "angle over which the output goes from end to end", "\"330 deg\""},
+      {"linearity", &Potentiometer::linearity, number, kShare, optional,
+       "largest deviation from a straight line, per voltage applied", "0.02"},
+      {"max_voltage", &Potentiometer::max_voltage, voltage, kPositive, optional,
+       "highest voltage that may be applied", "\"16 V\""},
+      {"friction_torque", &Potentiometer::friction_torque, torque, kNotNegative, optional,
+       "torque that turns it", "\"2.9 mN m\""},
+  };
+  return list;
+}
+
+template <>
 std::span<const Field<DeltaDescription>> fields<DeltaDescription>() {
   using Delta = DeltaDescription;
   static const Field<Delta> list[] = {
@@ -383,6 +451,39 @@ std::span<const Field<DriveOutputDescription>> fields<DriveOutputDescription>() 
        "stiffness of what it pushes against", "\"9.8e7 N/m\""},
       {"contact_damping", &Output::contact_damping, damping, kNotNegative, optional,
        "damping of what it pushes against", "0"},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<ArmCylinderDescription>> fields<ArmCylinderDescription>() {
+  using Arm = ArmCylinderDescription;
+  static const Field<Arm> list[] = {
+      {"l0", &Arm::l0, length, kCoordinate, optional,
+       "base pin along the arm (two, two_mod); arm pin along the arm (three)", "\"10.8 mm\""},
+      {"l1", &Arm::l1, length, kCoordinate, required,
+       "base pin across the arm (one, two, two_mod); arm pin across the arm (three)", "\"81.3 mm\""},
+      {"l2", &Arm::l2, length, kLinkLength, required,
+       "arm pin from the pivot (one, two, two_mod); base pin behind the pivot (three)", "\"12.5 mm\""},
+      {"h", &Arm::h, length, kCoordinate, optional, "base pin above the pivot (three)", "\"10.8 mm\""},
+      {"retracted_length", &Arm::retracted_length, length, kLinkLength, required,
+       "length from pin to pin with the rod in", "\"75 mm\""},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<PneumaticDriveDescription>> fields<PneumaticDriveDescription>() {
+  using Drive = PneumaticDriveDescription;
+  static const Field<Drive> list[] = {
+      {"supply_pressure", &Drive::supply_pressure, pressure, kPositive, required,
+       "pressure that supplies the regulators, gauge", "\"0.7 MPa\""},
+      {"bias_pressure", &Drive::bias_pressure, pressure, kNotNegative, optional,
+       "pressure of the chamber that works against the force, gauge", "\"0.02 MPa\""},
+      {"sensor_voltage", &Drive::sensor_voltage, voltage, kNotNegative, optional,
+       "voltage across the potentiometer", "\"5 V\""},
+      {"sensor_step", &Drive::sensor_step, voltage, kNotNegative, optional,
+       "smallest step of its output that is read", "\"1.22 mV\""},
   };
   return list;
 }

@@ -28,6 +28,9 @@ class Validator {
     std::visit([this](const auto& family) { check(family); }, d_.mechanism);
     for (std::size_t i = 0; i < d_.bodies.size(); ++i) check(d_.bodies[i], join_path("body", i));
     for (std::size_t i = 0; i < d_.drives.size(); ++i) check(d_.drives[i], join_path("drive", i));
+    for (std::size_t i = 0; i < d_.pneumatic_drives.size(); ++i) {
+      check(d_.pneumatic_drives[i], join_path("pneumatic_drive", i));
+    }
     return std::move(problems_);
   }
 
@@ -39,22 +42,25 @@ class Validator {
         wrong(join_path("body", i) + ".on", quoted(on), "is no link of this mechanism", suggest(on, links));
       }
     }
-    const std::vector<std::string> active = active_joint_names(d_.mechanism);
-    std::vector<bool> driven(active.size(), false);
+    active_ = active_joint_names(d_.mechanism);
+    driven_.assign(active_.size(), false);
     for (std::size_t i = 0; i < d_.drives.size(); ++i) {
-      const DriveDescription& drive = d_.drives[i];
-      const std::string key = join_path("drive", i) + ".joints";
-      for (const std::string& joint : drive.joints.empty() ? active : drive.joints) {
-        const int index = active_joint_index(d_.mechanism, joint);
-        const bool is_free = index >= 0 && is_free_joint(d_.mechanism, index);
-        if (index < 0) {
-          wrong(key, quoted(joint), "is no active joint of this mechanism", suggest(joint, active));
-        } else if (is_free && !drive.joints.empty()) {
-          wrong(key, quoted(joint), "is free: the hand moves it", "leave it out, or take free from the joint");
-        } else if (!is_free && driven[index]) {
-          wrong(key, quoted(joint), "has another drive already", "give each joint to one drive");
+      drive_joints(d_.drives[i].joints, join_path("drive", i) + ".joints");
+    }
+    for (std::size_t i = 0; i < d_.pneumatic_drives.size(); ++i) {
+      const PneumaticDriveDescription& drive = d_.pneumatic_drives[i];
+      const std::string path = join_path("pneumatic_drive", i);
+      drive_joints(drive.joints, path + ".joints");
+      const bool direct = std::holds_alternative<DirectCylinderDescription>(drive.mount);
+      for (const int joint : driven_joints(d_.mechanism, drive)) {
+        if (joint < 0 || is_sliding_joint(d_.mechanism, joint) == direct) continue;
+        const std::string& name = active_[static_cast<std::size_t>(joint)];
+        if (direct) {
+          wrong(path, "", fmt::format("moves \"{}\", which turns, without an arm", name),
+                "write mount = { layout = \"two\", ... }, or make the joint prismatic");
         } else {
-          driven[index] = true;
+          wrong(path + ".mount", "", fmt::format("turns an arm, but \"{}\" slides", name),
+                "leave mount out: the cylinder is the joint");
         }
       }
     }
@@ -62,6 +68,23 @@ class Validator {
   }
 
  private:
+  // Notes what is wrong with the joints that a drive names, and which are driven.
+  void drive_joints(const std::vector<std::string>& joints, const std::string& key) {
+    for (const std::string& joint : joints.empty() ? active_ : joints) {
+      const int index = active_joint_index(d_.mechanism, joint);
+      const bool is_free = index >= 0 && is_free_joint(d_.mechanism, index);
+      if (index < 0) {
+        wrong(key, quoted(joint), "is no active joint of this mechanism", suggest(joint, active_));
+      } else if (is_free && !joints.empty()) {
+        wrong(key, quoted(joint), "is free: the hand moves it", "leave it out, or take free from the joint");
+      } else if (!is_free && driven_[index]) {
+        wrong(key, quoted(joint), "has another drive already", "give each joint to one drive");
+      } else {
+        driven_[index] = true;
+      }
+    }
+  }
+
   static std::string quoted(const std::string& text) { return '"' + shortened(text) + '"'; }
 
   void wrong(std::string key, std::string value, std::string rule, std::string advice) {
@@ -250,6 +273,10 @@ class Validator {
       const std::string path = join_path("leg", i);
       name(leg.name, names, path + ".name", "leg");
       check(leg, path);
+      if (legs.platform == PlatformFreedom::point && !leg.platform_point.isZero(0.0)) {
+        wrong(path + ".platform_point", "", "must be zero where the platform is a point",
+              "leave it out, and put the tip into the tool point");
+      }
       joints += static_cast<int>(leg.joints.size());
       active += static_cast<int>(
           std::count_if(leg.joints.begin(), leg.joints.end(), [](const auto& j) { return j.active; }));
@@ -423,6 +450,73 @@ class Validator {
     }
   }
 
+  void check(const PneumaticDriveDescription& drive, const std::string& path) {
+    const std::size_t before = problems_.size();
+    check_fields(drive, path);
+    check_fields(drive.cylinder, path + ".cylinder");
+    check_fields(drive.regulator, path + ".regulator");
+    if (drive.potentiometer) check_fields(*drive.potentiometer, path + ".potentiometer");
+    if (const auto* arm = std::get_if<ArmCylinderDescription>(&drive.mount)) check(*arm, path + ".mount");
+    if (problems_.size() > before) return;
+    const auto pressure = [](double value) { return format_quantity(value, Dimension::pressure); };
+    const Regulator& regulator = drive.regulator;
+    if (drive.cylinder.rod_area >= drive.cylinder.rear_area) {
+      wrong(path + ".cylinder.rod_area", format_quantity(drive.cylinder.rod_area, Dimension::area),
+            "must be less than rear_area", "take the section of the rod from the piston's");
+    }
+    if (regulator.min_pressure >= regulator.max_pressure) {
+      wrong(path + ".regulator.min_pressure", pressure(regulator.min_pressure),
+            "must be less than max_pressure", "give the pressures at the least and at the largest command");
+    }
+    if (regulator.min_command >= regulator.max_command) {
+      wrong(path + ".regulator.min_command", format_quantity(regulator.min_command, Dimension::voltage),
+            "must be less than max_command", "give the least and the largest command");
+    }
+    if (drive.supply_pressure > regulator.max_supply_pressure) {
+      wrong(path + ".supply_pressure", pressure(drive.supply_pressure),
+            fmt::format("is more than the regulators take, {}", pressure(regulator.max_supply_pressure)),
+            "lower it");
+    }
+    const double highest =
+        std::min({drive.supply_pressure, regulator.max_pressure, drive.cylinder.max_pressure});
+    if (drive.bias_pressure >= highest) {
+      wrong(path + ".bias_pressure", pressure(drive.bias_pressure),
+            fmt::format("must be less than the highest pressure of a chamber, {}", pressure(highest)),
+            "lower it");
+    }
+    const bool voltage = drive.sensor_voltage > 0.0, step = drive.sensor_step > 0.0;
+    if ((voltage || step) && !drive.potentiometer) {
+      wrong(path + (voltage ? ".sensor_voltage" : ".sensor_step"), "", "has no potentiometer to belong to",
+            "name one with potentiometer = ..., or leave it out");
+    } else if (step && !voltage) {
+      wrong(path + ".sensor_step", "", "means nothing without sensor_voltage",
+            "give the voltage across the potentiometer too");
+    } else if (drive.potentiometer && drive.sensor_voltage > drive.potentiometer->max_voltage) {
+      wrong(path + ".sensor_voltage", format_quantity(drive.sensor_voltage, Dimension::voltage),
+            fmt::format("is more than the potentiometer takes, {} V", drive.potentiometer->max_voltage),
+            "lower it");
+    }
+  }
+
+  void check(const ArmCylinderDescription& arm, const std::string& path) {
+    check_fields(arm, path);
+    const auto misplaced = [&](const char* key, double value) {
+      if (value == 0.0) return;
+      wrong(path + "." + key, format_quantity(value, Dimension::length),
+            fmt::format("is no length of layout \"{}\"", to_string(arm.layout)), "leave it out");
+    };
+    if (arm.layout == ArmCylinderLayout::one) misplaced("l0", arm.l0);
+    if (arm.layout != ArmCylinderLayout::three) {
+      misplaced("h", arm.h);
+      if (!(arm.l1 > 0.0)) {
+        wrong(path + ".l1", format_quantity(arm.l1, Dimension::length), "must be positive in this layout",
+              "give the distance of the base pin from the arm's line");
+      }
+    } else if (arm.l0 == 0.0 && arm.l1 == 0.0) {
+      wrong(path + ".l1", "0", "puts the arm pin on the pivot", "give l0 or l1 a length");
+    }
+  }
+
   void check(const CapstanDescription& capstan, const std::string& path) {
     const std::size_t before = problems_.size();
     check_fields(capstan, path);
@@ -450,6 +544,8 @@ class Validator {
 
   const Description& d_;
   std::vector<Problem> problems_;
+  std::vector<std::string> active_;  // names of the active joints
+  std::vector<bool> driven_;         // of each, whether a drive has been met
 };
 
 }  // namespace

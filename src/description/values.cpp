@@ -36,15 +36,16 @@ class Collector {
 
   void add_serial_joint(const std::string& table, const SerialJointDescription& joint,
                         const SerialDescription& arm) {
+    const std::string& source = joint.source.empty() ? arm.source : joint.source;
     for (const Field<SerialJointDescription>& field : fields<SerialJointDescription>()) {
       const double value = joint.*std::get<double SerialJointDescription::*>(field.member);
-      add(table, std::string(field.key), {value}, field.dimension, std::string(field.meaning), arm.source,
-          arm.sources);
+      add(table, std::string(field.key), {value}, field.dimension, std::string(field.meaning), source,
+          joint.sources);
     }
     if (joint.type == SerialJointType::fixed) return;
     add(table, "range", {joint.range.min, joint.range.max},
         joint.type == SerialJointType::prismatic ? Dimension::length : Dimension::angle,
-        "lowest and highest value of " + joint.name, arm.source, arm.sources);
+        "lowest and highest value of " + joint.name, source, joint.sources);
   }
 
   void add(const std::string& table, const std::string& key, std::vector<double> values, Dimension dimension,
@@ -97,6 +98,14 @@ std::vector<DescribedValue> described_values(const Description& description) {
         drive.transmission);
     if (drive.preloader) collector.add_fields(join_path(table, "preloader"), *drive.preloader, drive.source);
     if (drive.output) collector.add_fields(join_path(table, "output"), *drive.output, drive.source);
+  }
+  for (std::size_t i = 0; i < description.pneumatic_drives.size(); ++i) {
+    const PneumaticDriveDescription& drive = description.pneumatic_drives[i];
+    const std::string table = join_path("pneumatic_drive", i);
+    collector.add_fields(table, drive, {});
+    if (const auto* arm = std::get_if<ArmCylinderDescription>(&drive.mount)) {
+      collector.add_fields(join_path(table, "mount"), *arm, drive.source);
+    }
   }
   return collector.take();
 }

@@ -137,6 +137,13 @@ std::string part(const Part& part, const Catalogue& catalogue) {
   return "{ " + inner + " }";
 }
 
+std::string platform_name(PlatformFreedom platform) {
+  for (const auto& [name, freedom] : platform_freedom_names()) {
+    if (freedom == platform) return name;
+  }
+  return {};
+}
+
 std::string_view name_of(JointType type) {
   switch (type) {
     case JointType::revolute:
@@ -166,6 +173,7 @@ class Writer {
     std::visit([this](const auto& mechanism) { write_mechanism(mechanism); }, description.mechanism);
     for (const BodyDescription& body : description.bodies) write(body);
     for (const DriveDescription& drive : description.drives) write(drive);
+    for (const PneumaticDriveDescription& drive : description.pneumatic_drives) write(drive);
   }
 
  private:
@@ -189,6 +197,8 @@ class Writer {
 
   void write_mechanism(const SerialDescription& arm) {
     Lines lines{{"type", text("serial")}};
+    if (arm.platform != PlatformFreedom::rigid)
+      lines.push_back({"platform", text(platform_name(arm.platform))});
     add_source(lines, arm.source, arm.sources);
     table("[mechanism]", lines);
     for (const SerialJointDescription& joint : arm.joints) {
@@ -205,16 +215,13 @@ class Writer {
         row.push_back({"home", quantity(joint.home, dimension)});
         if (joint.free) row.push_back({"free", "true"});
       }
+      add_source(row, joint.source, joint.sources);
       table("[[joint]]", row);
     }
   }
 
   void write_mechanism(const LegsDescription& legs) {
-    std::string platform;
-    for (const auto& [name, freedom] : platform_freedom_names()) {
-      if (freedom == legs.platform) platform = name;
-    }
-    Lines lines{{"type", text("legs")}, {"platform", text(platform)}};
+    Lines lines{{"type", text("legs")}, {"platform", text(platform_name(legs.platform))}};
     add_source(lines, legs.source, legs.sources);
     table("[mechanism]", lines);
     for (const LegDescription& leg : legs.legs) {
@@ -276,6 +283,22 @@ class Writer {
       add_fields(output, *drive.output, DriveOutputDescription{});
       add_source(output, drive.output->source, drive.output->sources);
       table("[drive.output]", output);
+    }
+  }
+
+  void write(const PneumaticDriveDescription& drive) {
+    Lines lines{{"joints", drive.joints.empty() ? text("all") : list(drive.joints)},
+                {"cylinder", part(drive.cylinder, catalogue_)},
+                {"regulator", part(drive.regulator, catalogue_)}};
+    if (drive.potentiometer) lines.push_back({"potentiometer", part(*drive.potentiometer, catalogue_)});
+    add_fields(lines, drive, PneumaticDriveDescription{});
+    add_source(lines, drive.source, drive.sources);
+    table("[[drive]]", lines);
+    if (const auto* arm = std::get_if<ArmCylinderDescription>(&drive.mount)) {
+      Lines mount{{"layout", text(to_string(arm->layout))}};
+      add_fields(mount, *arm, ArmCylinderDescription{});
+      add_source(mount, arm->source, arm->sources);
+      table("[drive.mount]", mount);
     }
   }
 

@@ -1,6 +1,7 @@
 #include "zwidth/mechanism/families.h"
 
 #include "zwidth/mechanism/delta.h"
+#include "zwidth/mechanism/positioning_arm.h"
 #include "zwidth/mechanism/r_cube.h"
 
 namespace zwidth {
@@ -17,6 +18,7 @@ std::shared_ptr<const ClosedForm> closed_form_of(const MechanismDescription& mec
   return std::visit(Overload{[](const DeltaDescription& delta) { return closed_form_of(delta); },
                              [](const FiveBarDescription& five_bar) { return closed_form_of(five_bar); },
                              [](const RCubeDescription& r_cube) { return closed_form_of(r_cube); },
+                             [](const SerialDescription& arm) { return positioning_closed_form(arm); },
                              [](const auto&) { return std::shared_ptr<const ClosedForm>(); }},
                     mechanism);
 }

@@ -25,6 +25,10 @@ std::optional<SerialDescription> rows_of(const LegDescription& leg);
 /// `description` with its mechanism and bodies in the general form.
 Description spelled_out(const Description& description);
 
+/// A serial arm with its free joints held at home: what its drives alone do with the tool. Bodies stay where
+/// they are. Other mechanisms come back as they are.
+Description without_free_joints(const Description& description);
+
 /// Null where the family has none.
 std::shared_ptr<const ClosedForm> closed_form_of(const MechanismDescription& mechanism);
 std::shared_ptr<const ClosedForm> closed_form_of(const DeltaDescription& delta);

@@ -39,7 +39,8 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
     LegModel model;
     model.first = joint_count();
     model.count = static_cast<int>(leg.joints.size());
-    model.attachment = leg.attachment;
+    // A tool that is a point asks nothing of orientations.
+    model.attachment = platform_ == PlatformFreedom::point ? Attachment::spherical : leg.attachment;
     model.platform_point = leg.platform_point;
     model.platform_rotation = leg.platform_rotation;
     Vector3 inner = Vector3::Zero();
@@ -77,6 +78,13 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
     model.mass = body.mass;
     model.centre = model.joint < 0 ? body.centre : Vector3(body.centre - points[model.joint]);
     model.inertia = body.inertia;
+    if (model.joint < 0 && platform_ == PlatformFreedom::point) {
+      // The platform is the first leg's last link: its turning counts, though the tool's rows leave it out.
+      const LegModel& leg = legs_.front();
+      model.joint = leg.first + leg.count - 1;
+      model.centre = leg.tip + leg.platform_rotation * body.centre;
+      model.inertia = leg.platform_rotation * body.inertia * leg.platform_rotation.transpose();
+    }
     bodies_.push_back(model);
   }
 }
@@ -86,6 +94,7 @@ std::span<const int> Mechanism::tool_axes() const {
   static constexpr std::array<int, 3> planar = {0, 1, 5};
   switch (platform_) {
     case PlatformFreedom::translation:
+    case PlatformFreedom::point:
       return std::span(all).first(3);
     case PlatformFreedom::planar_translation:
       return std::span(all).first(2);

@@ -11,7 +11,10 @@ namespace zwidth {
 LegsDescription legs_of(const SerialDescription& arm) {
   LegDescription leg;
   leg.name = "arm";
-  leg.attachment = Attachment::rigid;
+  // Where the tool's orientation means nothing, the last row is held by its point alone.
+  const bool by_point =
+      arm.platform == PlatformFreedom::translation || arm.platform == PlatformFreedom::planar_translation;
+  leg.attachment = by_point ? Attachment::spherical : Attachment::rigid;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   for (const SerialJointDescription& row : arm.joints) {
     if (row.type != SerialJointType::fixed) {
@@ -29,10 +32,10 @@ LegsDescription legs_of(const SerialDescription& arm) {
         Eigen::AngleAxisd(row.alpha, Vector3::UnitX());
   }
   leg.tip = T.translation();
-  leg.platform_rotation = T.linear();
+  if (!by_point) leg.platform_rotation = T.linear();
 
   LegsDescription legs;
-  legs.platform = PlatformFreedom::rigid;
+  legs.platform = arm.platform;
   legs.legs = {leg};
   return legs;
 }
@@ -117,6 +120,45 @@ std::optional<SerialDescription> rows_of(const LegDescription& leg) {
   if (std::abs(hand.d) < kSame) hand.d = 0.0;
   if (!is_identity(hand)) arm.joints.push_back(hand);
   return arm;
+}
+
+Description without_free_joints(const Description& description) {
+  const auto* arm = std::get_if<SerialDescription>(&description.mechanism);
+  if (arm == nullptr) return description;
+  Description result = description;
+  auto& rows = std::get<SerialDescription>(result.mechanism).joints;
+  const std::vector<JointDescription> joints = legs_of(*arm).legs.front().joints;
+  Eigen::Isometry3d held = Eigen::Isometry3d::Identity();  // what the free joints so far do at home
+  std::string link;                                        // of the last joint that is not free
+  std::size_t j = 0;
+  for (SerialJointDescription& row : rows) {
+    if (row.type == SerialJointType::fixed) continue;
+    const JointDescription& joint = joints[j++];
+    if (!row.free) {
+      link = "arm/" + row.name;
+      held.setIdentity();
+      continue;
+    }
+    if (joint.type == JointType::prismatic) {
+      held.translate(Vector3(row.home * joint.axis));
+      row.d += row.home;
+    } else {
+      held = held * Eigen::Translation3d(joint.point) * Eigen::AngleAxisd(row.home, joint.axis) *
+             Eigen::Translation3d(-joint.point);
+      row.theta += row.home;
+    }
+    for (BodyDescription& body : result.bodies) {
+      if (body.on != "arm/" + row.name) continue;
+      body.centre = held * body.centre;
+      body.inertia = held.linear() * body.inertia * held.linear().transpose();
+      body.on = link;
+    }
+    row.type = SerialJointType::fixed;
+    row.free = false;
+  }
+  // Links that no drive moves are part of the base.
+  std::erase_if(result.bodies, [](const BodyDescription& body) { return body.on.empty(); });
+  return result;
 }
 
 }  // namespace zwidth

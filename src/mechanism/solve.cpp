@@ -188,6 +188,9 @@ void judge(Solution& solution, const Closure& closure) {
   Posture& posture = *solution.posture;
   const Mechanism& mechanism = posture.mechanism();
   JointVector& joints = PostureBuilder::joints(posture);
+  if (mechanism.platform() == PlatformFreedom::point) {
+    PostureBuilder::tool(posture).rotation = posture.leg_tip_rotation(0);
+  }
   solution.conditioning = std::min(closure.reciprocal_condition(), closure.drive_condition(posture));
   solution.status = solution.conditioning < kSingular ? SolveStatus::degraded : SolveStatus::reached;
   for (int j = 0; j < mechanism.joint_count(); ++j) {
@@ -401,7 +404,8 @@ Solution inverse_general(const Mechanism& mechanism, const Pose& tool, const Sol
       return solution;
     }
   }
-  const Pose from = posture.tool();
+  Pose from = posture.tool();
+  if (!mechanism.tool_turns()) from.rotation = tool.rotation;
   for (int l = 0; l < legs; ++l) {
     budget.left = options.max_iterations;
     const JointVector before = posture.joints();

@@ -32,6 +32,9 @@ TEST(Catalogue, EveryPartHasASource) {
   expect_every_value_has_a_source<Cable>();
   expect_every_value_has_a_source<Bearing>();
   expect_every_value_has_a_source<Material>();
+  expect_every_value_has_a_source<Cylinder>();
+  expect_every_value_has_a_source<Regulator>();
+  expect_every_value_has_a_source<Potentiometer>();
 }
 
 // Data sheets repeat themselves: a value mistyped disagrees with the others. The tolerances are those of the
@@ -76,6 +79,20 @@ TEST(Catalogue, OtherPartsAgreeWithThemselves) {
     if (given(bearing.static_load)) {
       EXPECT_LT(bearing.static_load, bearing.dynamic_load) << bearing.info.name;
     }
+  }
+  for (const Cylinder& cylinder : catalogue().all<Cylinder>()) {
+    EXPECT_LT(cylinder.rod_area, cylinder.rear_area) << cylinder.info.name;
+    // Areas are printed with three digits of a square inch.
+    if (given(cylinder.bore)) {
+      EXPECT_NEAR(cylinder.rear_area / (std::numbers::pi / 4.0 * std::pow(cylinder.bore, 2)), 1.0, 0.01)
+          << cylinder.info.name;
+    }
+    EXPECT_LT(cylinder.moving_mass, cylinder.mass) << cylinder.info.name;
+  }
+  for (const Regulator& regulator : catalogue().all<Regulator>()) {
+    EXPECT_LT(regulator.min_pressure, regulator.max_pressure) << regulator.info.name;
+    EXPECT_LE(regulator.max_pressure, regulator.max_supply_pressure) << regulator.info.name;
+    EXPECT_LT(regulator.min_command, regulator.max_command) << regulator.info.name;
   }
   for (const Material& material : catalogue().all<Material>()) {
     if (given(material.yield_strength)) {

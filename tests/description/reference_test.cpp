@@ -35,12 +35,14 @@ TEST(Reference, TheDocumentHasTheKeysOfTheCode) {
 
 const std::set<std::string> kFamilies = {"delta", "five-bar", "r-cube", "serial", "serial-joint"};
 
+const std::set<std::string> kPneumatic = {"pneumatic-drive", "mount"};
+
 // A file made of nothing but the examples of the reference.
 std::string example_file() {
   std::string text;
   for (const TableReference& table : file_reference()) {
     if (table.name == "motor") break;
-    if (kFamilies.contains(table.name)) continue;
+    if (kFamilies.contains(table.name) || kPneumatic.contains(table.name)) continue;
     if (table.name == "ratio" || table.name == "gearhead transmission")
       continue;  // a drive has one transmission
     std::string header = "[[" + table.name + "]]";
@@ -88,6 +90,21 @@ TEST(Reference, TheExamplesOfTheOtherTransmissionsRead) {
     text.replace(from, to - from, keys);
     for (const Problem& problem : problems_of(text)) ADD_FAILURE() << to_string(problem) << "\n" << text;
   }
+}
+
+TEST(Reference, TheExamplesOfAPneumaticDriveRead) {
+  std::string text =
+      "[device]\nname = \"x\"\n[mechanism]\ntype = \"serial\"\n"
+      "[[joint]]\nname = \"theta1\"\ntype = \"revolute\"\na = 0.1\nrange = [-0.5, 0.5]\n";
+  for (const TableReference& table : file_reference()) {
+    if (!kPneumatic.contains(table.name)) continue;
+    text += table.name == "mount" ? "[drive.mount]\n" : "[[drive]]\n";
+    for (const KeyReference& key : table.keys) {
+      // h belongs to another layout than that of the example.
+      if (!key.example.empty() && key.key != "h") text += key.key + " = " + key.example + "\n";
+    }
+  }
+  for (const Problem& problem : problems_of(text)) ADD_FAILURE() << to_string(problem) << "\n" << text;
 }
 
 TEST(Reference, ThePartsOfTheCatalogueHaveNoOtherKeys) {

@@ -29,6 +29,8 @@ class Input {
   /// Notes what is wrong with the value at `path`. The place is that of the value, or of the nearest table
   /// around it.
   void report(const std::string& path, std::string rule, std::string advice);
+  /// What `validate` calls `path` stands at `in_file`.
+  void alias(std::string path, std::string in_file);
   /// Adds what `validate` found, with places, except where the value or its table could not be read anyway.
   void add_value_problems(const std::vector<Problem>& problems);
 
@@ -54,6 +56,7 @@ class Input {
   std::string file_;
   toml::table root_;
   std::map<std::string, std::string> overridden_;  // path -> "--set KEY"
+  std::map<std::string, std::string> aliases_;     // path of a table in the description -> in the file
   std::vector<Problem> problems_;
 };
 

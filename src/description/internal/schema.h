@@ -45,9 +45,10 @@ struct Field {
   std::string_view example;  ///< as TOML
 };
 
-/// The fields of Motor, Gearhead, Encoder, Amplifier, Cable, Bearing, Material, DeltaDescription,
-/// FiveBarDescription, RCubeDescription, SerialJointDescription, CapstanDescription, RatioDescription,
-/// GearheadDescription, FlexureDescription, DriveOutputDescription and DriveDescription.
+/// The fields of Motor, Gearhead, Encoder, Amplifier, Cable, Bearing, Material, Cylinder, Regulator,
+/// Potentiometer, DeltaDescription, FiveBarDescription, RCubeDescription, SerialJointDescription,
+/// CapstanDescription, RatioDescription, GearheadDescription, ArmCylinderDescription, FlexureDescription,
+/// DriveOutputDescription, DriveDescription and PneumaticDriveDescription.
 template <class Owner>
 std::span<const Field<Owner>> fields();
 

@@ -1,0 +1,194 @@
+#include "zwidth/mechanism/positioning_arm.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "zwidth/mechanism/families.h"
+#include "zwidth/mechanism/internal/posture_builder.h"
+#include "zwidth/mechanism/posture.h"
+#include "zwidth/mechanism/serial_chain.h"
+
+namespace zwidth {
+namespace {
+
+constexpr double kSame = 1e-9;       // of directions, and of positions relative to the arm's size
+constexpr double kRounding = 1e-12;  // by which a cosine may be beyond 1
+
+double wrapped(double angle) {
+  const double turned = std::remainder(angle, 2.0 * std::numbers::pi);
+  return turned <= -std::numbers::pi ? std::numbers::pi : turned;
+}
+
+bool parallel(const Vector3& a, const Vector3& b) {
+  return a.cross(b).norm() < kSame;
+}
+
+}  // namespace
+
+std::optional<PositioningArm> PositioningArm::of(const LegDescription& leg) {
+  if (leg.joints.size() < 3) return std::nullopt;
+  double size = 0.0;
+  for (const JointDescription& joint : leg.joints) {
+    if (!joint.active || joint.type == JointType::parallelogram) return std::nullopt;
+    size = std::max(size, (leg.tip - joint.point).norm());
+  }
+  for (std::size_t j = 3; j < leg.joints.size(); ++j) {
+    const JointDescription& wrist = leg.joints[j];
+    if (wrist.type != JointType::revolute) return std::nullopt;
+    if (wrist.axis.cross(leg.tip - wrist.point).norm() > kSame * size) return std::nullopt;
+  }
+
+  PositioningArm arm;
+  for (int j = 0; j < 3; ++j) {
+    if (leg.joints[j].type != JointType::prismatic) continue;
+    if (arm.slide_ >= 0) return std::nullopt;
+    arm.slide_ = j;
+  }
+  arm.first_ = arm.slide_ == 0 ? 1 : 0;
+  arm.second_ = arm.slide_ < 0 ? 1 : 3 - arm.slide_ - arm.first_;
+  const JointDescription &first = leg.joints[arm.first_], &second = leg.joints[arm.second_];
+  arm.n_ = first.axis;
+  if (!parallel(arm.n_, second.axis)) return std::nullopt;
+  arm.p1_ = first.point;
+  arm.p2_ = second.point;
+  arm.tip_ = leg.tip;
+  arm.sign_ = {1.0, 1.0, 1.0};
+  arm.sign_[arm.second_] = arm.n_.dot(second.axis) < 0.0 ? -1.0 : 1.0;
+  if (arm.slide_ >= 0) {
+    const Vector3& along = leg.joints[arm.slide_].axis;
+    if (!parallel(arm.n_, along)) return std::nullopt;
+    arm.sign_[arm.slide_] = arm.n_.dot(along) < 0.0 ? -1.0 : 1.0;
+  } else {
+    arm.m_ = leg.joints[2].axis;
+    arm.p3_ = leg.joints[2].point;
+    if (std::abs(arm.m_.dot(arm.n_)) > kSame) return std::nullopt;
+    if (arm.m_.cross(arm.tip_ - arm.p3_).norm() < kSame * size)
+      return std::nullopt;  // it does not lift the tool
+  }
+  arm.e1_ = arm.n_.unitOrthogonal();
+  arm.e2_ = arm.n_.cross(arm.e1_);
+  // Without an upper arm the first two joints are one.
+  const Planar u = arm.across(arm.p2_ - arm.p1_);
+  if (std::hypot(u.x, u.y) < kSame * size) return std::nullopt;
+  return arm;
+}
+
+// Adds the two elbows for a target r seen from the first joint, with w from the second joint to the tool:
+// r = R(theta1) (u + R(theta2) w).
+void PositioningArm::plane(const Planar& r, const Planar& w, double third,
+                           PositioningSolutions& solutions) const noexcept {
+  const Planar u = across(p2_ - p1_);
+  const double upper = std::hypot(u.x, u.y), fore = std::hypot(w.x, w.y), reach = std::hypot(r.x, r.y);
+  const double size = upper + fore;
+  if (fore < kRounding * size || (reach < kRounding * size && std::abs(upper - fore) < kRounding * size)) {
+    if (solutions.status == SolveStatus::unreachable) solutions.status = SolveStatus::degenerate;
+    return;
+  }
+  const double cosine = (reach * reach - upper * upper - fore * fore) / (2.0 * upper * fore);
+  if (!(std::abs(cosine) <= 1.0 + kRounding)) return;
+  const double bend = std::acos(std::clamp(cosine, -1.0, 1.0));
+  for (const double b : {bend, -bend}) {
+    std::array<double, 3>& q = solutions.joints[solutions.count++];
+    const double theta2 = b - std::atan2(w.y, w.x) + std::atan2(u.y, u.x);
+    const double theta1 = std::atan2(r.y, r.x) - std::atan2(u.y, u.x) -
+                          std::atan2(fore * std::sin(b), upper + fore * std::cos(b));
+    q[first_] = wrapped(theta1);
+    q[second_] = wrapped(sign_[second_] * theta2);
+    q[slide_ >= 0 ? slide_ : 2] = third;
+  }
+  solutions.status = SolveStatus::reached;
+}
+
+PositioningSolutions PositioningArm::inverse(const Vector3& position) const noexcept {
+  PositioningSolutions solutions;
+  const Planar r = across(position - p1_);
+  if (slide_ >= 0) {
+    plane(r, across(tip_ - p2_), sign_[slide_] * n_.dot(position - tip_), solutions);
+    return solutions;
+  }
+  // The third joint alone sets the height: A cos q + B sin q = C.
+  const Vector3 v = tip_ - p3_;
+  const double A = n_.dot(v), B = n_.dot(m_.cross(v)), C = n_.dot(position - p3_);
+  const double amplitude = std::hypot(A, B);
+  if (!(std::abs(C) <= amplitude * (1.0 + kRounding)) || amplitude == 0.0) return solutions;
+  const double middle = std::atan2(B, A), apart = std::acos(std::clamp(C / amplitude, -1.0, 1.0));
+  const Vector3 along = m_ * m_.dot(v);
+  for (const double q : {middle - apart, middle + apart}) {
+    const Vector3 tip = p3_ + along + std::cos(q) * (v - along) + std::sin(q) * m_.cross(v);
+    plane(r, across(tip - p2_), wrapped(q), solutions);
+  }
+  return solutions;
+}
+
+// -------------------------------------------------------------------------------------------------- closed
+// form
+
+namespace {
+
+class PositioningClosedForm final : public ClosedForm {
+ public:
+  PositioningClosedForm(const PositioningArm& arm, const LegDescription& leg, const SerialChain& chain)
+      : arm_(arm), leg_(leg), chain_(chain) {
+    home_.resize(static_cast<Eigen::Index>(leg.joints.size()));
+    for (Eigen::Index j = 0; j < home_.size(); ++j) home_[j] = leg.joints[static_cast<std::size_t>(j)].home;
+  }
+
+  ClosedPosture forward(const ActiveVector& active) const noexcept override {
+    return {.status = SolveStatus::reached, .joints = active, .tool = chain_.pose(active)};
+  }
+
+  int branch_count() const noexcept override { return arm_.branch_count(); }
+
+  // Solutions within the joint ranges come first, then those near the start, or else near home. The wrist
+  // stays.
+  ClosedPosture inverse(const Pose& tool, const SolveOptions& options, int branch) const noexcept override {
+    const PositioningSolutions solutions = arm_.inverse(tool.position);
+    if (solutions.status != SolveStatus::reached) return {.status = solutions.status, .joint = 0};
+    if (branch >= solutions.count) return {.status = SolveStatus::unreachable, .joint = 0};
+    const JointVector start = options.start != nullptr ? options.start->joints() : home_;
+    std::array<double, 4> cost{};
+    std::array<int, 4> order{0, 1, 2, 3};
+    for (int n = 0; n < solutions.count; ++n) cost[n] = cost_of(solutions.joints[n], start);
+    // Four at most, so that the equal ones keep their order.
+    for (int i = 1; i < solutions.count; ++i) {
+      for (int k = i; k > 0 && cost[order[k]] < cost[order[k - 1]]; --k) std::swap(order[k], order[k - 1]);
+    }
+    JointVector joints = start;
+    for (int j = 0; j < 3; ++j) joints[j] = solutions.joints[order[branch]][j];
+    return forward(ActiveVector(joints));
+  }
+
+ private:
+  double cost_of(const std::array<double, 3>& joints, const JointVector& start) const noexcept {
+    constexpr double kOutOfRange = 1e3;  // more than any way from the start
+    constexpr double kLimitTolerance = 1e-9;
+    double cost = 0.0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const JointDescription& joint = leg_.joints[j];
+      const bool slides = joint.type == JointType::prismatic;
+      double q = joints[j];
+      if (!slides) q = internal::wrapped({.type = joint.type, .range = joint.range}, q);
+      if (!joint.range.contains(q, kLimitTolerance)) cost += kOutOfRange;
+      const double way = q - start[static_cast<Eigen::Index>(j)];
+      cost += std::abs(slides ? way : std::remainder(way, 2.0 * std::numbers::pi));
+    }
+    return cost;
+  }
+
+  PositioningArm arm_;
+  LegDescription leg_;
+  SerialChain chain_;
+  JointVector home_;
+};
+
+}  // namespace
+
+std::shared_ptr<const ClosedForm> positioning_closed_form(const SerialDescription& arm) {
+  if (arm.platform != PlatformFreedom::point) return nullptr;
+  const LegDescription leg = legs_of(arm).legs.front();
+  const std::optional<PositioningArm> positioning = PositioningArm::of(leg);
+  return positioning ? std::make_shared<PositioningClosedForm>(*positioning, leg, SerialChain(arm)) : nullptr;
+}
+
+}  // namespace zwidth

@@ -8,6 +8,7 @@
 
 #include "figure/svg.h"
 #include "model.h"
+#include "sheet_arm.h"
 #include "sheet_text.h"
 #include "terminal.h"
 
@@ -96,6 +97,7 @@ class Page {
   std::string write() {
     overview();
     mechanism();
+    if (sheet_.arm) arm(*sheet_.arm);
     if (sheet_.workspace) workspace(*sheet_.workspace);
     if (sheet_.workspace) dexterity(*sheet_.workspace);
     if (sheet_.continuous && sheet_.peak) force();
@@ -170,6 +172,22 @@ class Page {
       tile(readable(2.0 * sheet_.workspace->inscribed.sphere.size, "m", 3),
            "diameter of the largest sphere inside");
       tile(number(sheet_.workspace->sweep[Figure::condition_number].mean, 3), "mean condition number");
+    }
+    if (sheet_.arm) {
+      if (sheet_.arm->reach) {
+        tile(readable(sheet_.arm->reach->volume.value, "m^3", 3), "reach of the tool point");
+        tile(readable(2.0 * sheet_.arm->reach->inscribed.sphere.size, "m", 3),
+             "diameter of the largest sphere inside");
+      }
+      tile(readable(sheet_.arm->farthest.distance, "m", 3), "farthest from the base origin");
+      tile(number(sheet_.arm->continuous.translation.index(), 3),
+           "mean conditioning of translation, 1 is best");
+      if (sheet_.arm->continuous.weakest_force.count > 0)
+        tile(readable(sheet_.arm->continuous.weakest_force.mean, "N", 3),
+             "force in every direction, continuous, mean over postures");
+      if (sheet_.arm->peak && sheet_.arm->peak->weakest_force.count > 0)
+        tile(readable(sheet_.arm->peak->weakest_force.mean, "N", 3),
+             "force in every direction, peak, mean over postures");
     }
     if (sheet_.continuous)
       tile(readable(sheet_.continuous->weakest.min, "N", 3), "force in every direction and place, continuous");
@@ -288,15 +306,27 @@ class Page {
     if (sheet_.moving_mass > 0.0)
       body_ += fmt::format(" Its bodies weigh {} together.", escaped(readable(sheet_.moving_mass, "kg")));
     body_ += "</p>\n";
-    values_table([](const DescribedValue& value) { return value.table == "mechanism"; }, false);
+    values_table(
+        [](const DescribedValue& value) {
+          return value.table == "mechanism" || value.table.starts_with("joint[");
+        },
+        !description_is_flat());
+  }
+
+  // All values of the mechanism stand in one table.
+  bool description_is_flat() const {
+    return !std::holds_alternative<SerialDescription>(description_.mechanism);
   }
 
   /// Extremes and mean, which a finer lattice would move a little.
   void statistics_head(double spacing) {
+    statistics_head("Over a lattice of " + format_quantity(spacing, Dimension::length));
+  }
+  void statistics_head(const std::string& over) {
     rows_ = fmt::format(
-        "<tr><th>Over a lattice of {}</th><th class=\"n\">Least</th><th class=\"n\">Mean</th><th "
+        "<tr><th>{}</th><th class=\"n\">Least</th><th class=\"n\">Mean</th><th "
         "class=\"n\">Most</th><th>Unit</th></tr>",
-        format_quantity(spacing, Dimension::length));
+        escaped(over));
   }
   void statistics(const std::string& name, const Statistic& statistic, double factor, const std::string& unit) {
     const bool has = statistic.count > 0;
@@ -305,6 +335,41 @@ class Page {
              cell(has ? number(statistic.max * factor) : "–", "n") + cell(unit, "w") + "</tr>\n";
   }
   void statistics_end() { body_ += fmt::format("<div class=\"scroll\"><table>{}</table></div>\n", rows_); }
+
+  void facts(const std::vector<ArmFact>& lines) {
+    std::string rows = "<tr><th>Quantity</th><th class=\"n\">Value</th><th></th></tr>";
+    for (const ArmFact& fact : lines) {
+      std::string name = fact.name;
+      name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+      rows += "<tr>" + cell(name) + cell(fact.value, "n") + cell(fact.note, "source") + "</tr>\n";
+    }
+    body_ += fmt::format("<div class=\"scroll\"><table>{}</table></div>\n", rows);
+  }
+
+  void arm(const ArmSheet& arm) {
+    section("reach", "Reach of the tool point");
+    facts(reach_facts(arm));
+    show_figures("reach", "three");
+    if (arm.home) {
+      section("home", "Home posture");
+      facts(home_facts(arm, Mechanism(description_)));
+    }
+    for (const PostureTable& table : arm_tables(arm)) {
+      section(table.id, table.title);
+      how(table.how);
+      statistics_head("Over the joint ranges");
+      for (const PostureRow& row : table.rows) {
+        std::string name = row.name;
+        name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+        rows_ += "<tr>" + cell(name) + cell(number(row.statistic->min * row.factor), "n") +
+                 cell(number(row.statistic->mean * row.factor), "n") +
+                 cell(number(row.statistic->max * row.factor), "n") + cell(row.unit, "w") + "</tr>\n";
+      }
+      statistics_end();
+      if (table.id == "inertia")
+        values_table([](const DescribedValue& value) { return value.table.starts_with("body"); }, true);
+    }
+  }
 
   void workspace(const WorkspaceSheet& workspace) {
     section("workspace", "Workspace");

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "sheet_arm.h"
+
 #include "zwidth/description/names.h"
 #include "zwidth/description/values.h"
 
@@ -221,6 +223,8 @@ Json data_sheet_json(const DataSheet& sheet, const Description& description) {
     document[key] = nullptr;
     notes[key] = why;
   };
+  document["arm"] = sheet.arm ? arm_json(*sheet.arm) : Json(nullptr);
+  if (!sheet.arm) notes["arm"] = "of a tool that also turns";
   if (sheet.workspace) {
     document["workspace"] = workspace_json(*sheet.workspace);
   } else {

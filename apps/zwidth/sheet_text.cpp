@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model.h"
+#include "sheet_arm.h"
 
 #include "zwidth/description/units.h"
 #include "zwidth/description/values.h"
@@ -75,6 +76,7 @@ class SheetText {
 
   std::string write() {
     identity();
+    if (sheet_.arm) arm(*sheet_.arm);
     if (sheet_.workspace) workspace(*sheet_.workspace);
     if (sheet_.workspace) dexterity(*sheet_.workspace);
     if (sheet_.continuous && sheet_.peak) forces();
@@ -177,6 +179,27 @@ class SheetText {
     }
     captions.erase(captions.find_last_not_of(' ') + 1);
     text_.line(tinted(terminal(), Tint::dim, captions));
+  }
+
+  void arm(const ArmSheet& arm) {
+    const auto facts = [&](const char* heading, const std::vector<ArmFact>& lines) {
+      if (lines.empty()) return;
+      text_.heading(heading);
+      for (const ArmFact& fact : lines) text_.row(fact.name, fact.value, fact.note);
+    };
+    facts("Reach of the tool point", reach_facts(arm));
+    facts("Home posture", home_facts(arm, Mechanism(description_)));
+    for (const PostureTable& table : arm_tables(arm)) {
+      text_.heading(table.title);
+      std::vector<std::vector<std::string>> rows;
+      for (const PostureRow& row : table.rows) {
+        rows.push_back({row.name, number(row.statistic->min * row.factor),
+                        number(row.statistic->mean * row.factor), number(row.statistic->max * row.factor),
+                        row.unit});
+      }
+      text_.table({"", "min", "mean", "max", ""}, rows);
+      text_.paragraph(table.how, 2, Tint::dim);
+    }
   }
 
   static std::vector<std::string> cells(const std::string& label, const Statistic& statistic, double factor,

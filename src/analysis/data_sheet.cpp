@@ -193,6 +193,34 @@ std::optional<PostureSheet> middle_posture(const Mechanism& mechanism, const Dat
   return middle;
 }
 
+// Torque ranges of all active joints; zero where there is no drive.
+TorqueRange torque_range(const std::vector<std::optional<Drive>>& drives, bool peak) {
+  ActiveVector limit = ActiveVector::Zero(static_cast<Eigen::Index>(drives.size()));
+  for (std::size_t j = 0; j < drives.size(); ++j) {
+    if (!drives[j]) continue;
+    limit[static_cast<Eigen::Index>(j)] =
+        (peak ? drives[j]->peak_torque() : drives[j]->continuous_torque()).usable;
+  }
+  return TorqueRange::symmetric(limit);
+}
+
+ArmSheet arm_of(const Mechanism& mechanism, const std::vector<std::optional<Drive>>& drives,
+                const ActiveVector& joint_step, const DataSheetOptions& options) {
+  bool driven = true, stepped = true;
+  for (int j = 0; j < mechanism.active_count(); ++j) {
+    const bool has_drive = drives[static_cast<std::size_t>(j)].has_value();
+    driven = driven && (has_drive || mechanism.is_free(j));
+    stepped = stepped && has_drive;
+  }
+  const auto source = [&](bool peak) -> TorqueSource {
+    if (!driven) return {};
+    return [range = torque_range(drives, peak)](const Posture&) { return range; };
+  };
+  ArmSheetOptions arm{.effort = options.effort};
+  if (options.slice_points <= 1) arm.slice_postures = 0;
+  return arm_sheet(mechanism, source(false), source(true), stepped ? joint_step : ActiveVector(), arm);
+}
+
 void add_drive_warnings(DataSheet& sheet) {
   for (const DriveSheet& drive : sheet.drives) {
     for (const Margin& margin : drive.margins) {
@@ -275,6 +303,11 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
     sheet.warnings.push_back("Not every active joint has a drive: forces and resolution are left out.");
   add_drive_warnings(sheet);
 
+  if (mechanism.tool_turns()) {
+    sheet.arm = arm_of(mechanism, drives, sheet.joint_resolution, options);
+    sheet.complete = sheet.arm->complete;
+    return sheet;
+  }
   if (const std::optional<std::string> obstacle = workspace_obstacle(mechanism)) {
     sheet.warnings.push_back("The workspace of this mechanism is left out: " + *obstacle + ".");
     return sheet;

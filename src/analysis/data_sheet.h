@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "zwidth/actuation/drive.h"
+#include "zwidth/analysis/arm_sheet.h"
 #include "zwidth/analysis/force.h"
 #include "zwidth/analysis/inertia.h"
 #include "zwidth/analysis/resolution.h"
@@ -117,6 +118,7 @@ struct DataSheet {
   double moving_mass = 0.0;  ///< of all bodies [kg]
 
   std::optional<WorkspaceSheet> workspace;  ///< empty for mechanisms that `workspace_obstacle` refuses
+  std::optional<ArmSheet> arm;              ///< of a tool that also turns; empty for all others
   std::optional<ForceSheet> continuous;     ///< empty without drives on every joint, or without workspace
   std::optional<ForceSheet> peak;
   std::optional<InertiaSweep> inertia;  ///< empty if nothing has mass

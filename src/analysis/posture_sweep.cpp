@@ -230,22 +230,39 @@ FarthestPosture ascend(const Mechanism& mechanism, const Value& value, const Slo
   return best;
 }
 
+// The root of x^(n+1) = x + 1, which for n = 1 is the golden ratio.
+double golden_ratio(int n) {
+  static const std::array<double, kMaxActive + 1> roots = [] {
+    std::array<double, kMaxActive + 1> found{};
+    for (int k = 1; k <= kMaxActive; ++k) {
+      found[k] = 2.0;
+      for (int round = 0; round < 60; ++round) found[k] = std::pow(1.0 + found[k], 1.0 / (k + 1));
+    }
+    return found;
+  }();
+  return roots[static_cast<std::size_t>(n)];
+}
+
 }  // namespace
 
 ActiveVector spread_posture(const Mechanism& mechanism, std::int64_t index) {
+  ActiveVector q(mechanism.active_count());
+  spread_postures(mechanism, index, 1, {q.data(), static_cast<std::size_t>(q.size())});
+  return q;
+}
+
+void spread_postures(const Mechanism& mechanism, std::int64_t first, std::size_t count, std::span<double> out) {
   const int n = mechanism.active_count();
-  // The root of x^(n+1) = x + 1 is the golden ratio for n = 1.
-  double phi = 2.0;
-  for (int round = 0; round < 60; ++round) phi = std::pow(1.0 + phi, 1.0 / (n + 1));
-  ActiveVector q(n);
+  const double phi = golden_ratio(n);
   double share = 1.0;
   for (int j = 0; j < n; ++j) {
     share /= phi;
-    const double whole = 0.5 + share * static_cast<double>(index + 1);
     const Interval range = mechanism.active_range(j);
-    q[j] = range.min + range.width() * (whole - std::floor(whole));
+    for (std::size_t p = 0; p < count; ++p) {
+      const double whole = 0.5 + share * static_cast<double>(first + static_cast<std::int64_t>(p) + 1);
+      out[static_cast<std::size_t>(j) * count + p] = range.min + range.width() * (whole - std::floor(whole));
+    }
   }
-  return q;
 }
 
 PostureSweep sweep_postures(const Mechanism& mechanism, const PostureSweepOptions& options,

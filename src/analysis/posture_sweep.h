@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 
 #include "zwidth/analysis/dexterity.h"
 #include "zwidth/analysis/force.h"
@@ -64,6 +65,10 @@ PostureSweep sweep_postures(const Mechanism& mechanism, const PostureSweepOption
 /// Active joints of sample `index` of any sweep: an additive sequence that fills the joint ranges evenly
 /// (Roberts 2018: multiples of the powers of a generalised golden ratio).
 ActiveVector spread_posture(const Mechanism& mechanism, std::int64_t index);
+
+/// `count` of them from `first` on, joint after joint: out[j count + p]. REQUIRES: out has count active_count()
+/// elements.
+void spread_postures(const Mechanism& mechanism, std::int64_t first, std::size_t count, std::span<double> out);
 
 /// How far the tool goes along a direction of the base frame, with the joints in their ranges: by projected
 /// gradient ascent from the best of many postures. [m]

@@ -27,6 +27,11 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
   const LegsDescription& mechanism = std::get<LegsDescription>(general.mechanism);
   assert(mechanism.legs.size() <= kMaxLegs);
   platform_ = mechanism.platform;
+  if (platform_ == PlatformFreedom::rigid && mechanism.legs.size() == 1) {
+    const auto* rows = std::get_if<SerialDescription>(&description.mechanism);
+    const auto found = rows != nullptr ? *rows : rows_of(mechanism.legs.front());
+    if (found) serial_ = std::make_shared<SerialChain>(*found);
+  }
 
   std::map<std::string, int> uses;
   for (const LegDescription& leg : mechanism.legs) {
@@ -68,7 +73,8 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
     legs_.push_back(model);
   }
   assert(joint_count() <= kMaxJoints && active_count() <= kMaxActive);
-  if (characteristic_length_ == 0.0) characteristic_length_ = 1.0;  // nothing but turns in one point: any length does
+  if (characteristic_length_ == 0.0)
+    characteristic_length_ = 1.0;  // nothing but turns in one point: any length does
   home_guess_ = Eigen::Map<const Eigen::VectorXd>(home.data(), static_cast<Eigen::Index>(home.size()));
   drive_inertia_ = ActiveVector::Zero(active_count());
 

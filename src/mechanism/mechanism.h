@@ -10,6 +10,7 @@
 #include "zwidth/description/description.h"
 #include "zwidth/mechanism/closed_form.h"
 #include "zwidth/mechanism/delta.h"
+#include "zwidth/mechanism/serial_chain.h"
 #include "zwidth/mechanism/sizes.h"
 
 namespace zwidth {
@@ -89,6 +90,9 @@ class Mechanism {
 
   /// Solves in closed form; null where there is none.
   const ClosedForm* closed_form() const { return closed_form_.get(); }
+  /// The rows of an arm: one leg whose joints are all active, revolute or prismatic, and whose last link is the
+  /// platform. Null for other mechanisms. Its joints are all the mechanism's joints, in order.
+  const SerialChain* serial() const { return serial_.get(); }
   /// The delta's lengths, if this is one.
   const std::optional<DeltaGeometry>& delta() const { return delta_; }
 
@@ -106,6 +110,7 @@ class Mechanism {
   ActiveVector drive_inertia_;
   double characteristic_length_ = 0.0;
   std::shared_ptr<const ClosedForm> closed_form_;  // never changes, so copies share it
+  std::shared_ptr<const SerialChain> serial_;
   std::optional<DeltaGeometry> delta_;
 };
 

@@ -4,41 +4,18 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
+#include "support/small_arms.h"
+
 namespace zwidth {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-SerialJointDescription turn(const char* name, double d, double a, double alpha, Interval degrees) {
-  return {.name = name,
-          .d = d,
-          .a = a,
-          .alpha = alpha * kDegree,
-          .range = {degrees.min * kDegree, degrees.max * kDegree},
-          .home = 0.5 * (degrees.min + degrees.max) * kDegree};
-}
-
-Mechanism arm(std::vector<SerialJointDescription> joints) {
-  Description description;
-  description.name = "arm";
-  description.mechanism = SerialDescription{.joints = std::move(joints)};
-  return Mechanism(description);
-}
-
-// Slides along z, then turns twice about it: the first positioning stage of Akhoondi Asadi 2017 without its
-// offset.
 Mechanism cylindrical(double upper, double fore) {
-  return arm({{.name = "lift", .type = SerialJointType::prismatic, .range = {0.0, 0.1}, .home = 0.05},
-              turn("shoulder", 0.0, upper, 0.0, {-60.0, 60.0}),
-              turn("elbow", 0.0, fore, 0.0, {-60.0, 60.0})});
+  return Mechanism(test::cylindrical_arm(upper, fore));
 }
-
-// A spherical shoulder, an elbow and a spherical wrist (Baser 2006, table 3.1).
 Mechanism seven_joints(double upper, double fore) {
-  return arm({turn("q1", 0.0, 0.0, -90.0, {-90.0, 90.0}), turn("q2", 0.0, 0.0, 90.0, {30.0, 120.0}),
-              turn("q3", upper, 0.0, -90.0, {-60.0, 60.0}), turn("q4", 0.0, 0.0, 90.0, {45.0, 135.0}),
-              turn("q5", fore, 0.0, -90.0, {0.0, 360.0}), turn("q6", 0.0, 0.0, 90.0, {0.0, 360.0}),
-              turn("q7", 0.0, 0.0, 0.0, {0.0, 360.0})});
+  return Mechanism(test::seven_joint_arm(upper, fore));
 }
 
 TEST(PostureSweep, SpreadsPosturesEvenlyOverEveryRange) {

@@ -1,0 +1,89 @@
+#include "zwidth/analysis/arm_sheet.h"
+
+#include <algorithm>
+
+#include "zwidth/mechanism/dynamics.h"
+
+namespace zwidth {
+namespace {
+
+// Largest pure load along each tool axis: rows of the other kind are zero.
+ToolVector axis_loads(const Mechanism& mechanism, const Jacobian& jacobian, const TorqueRange& range) {
+  ToolVector loads(jacobian.rows());
+  for (Eigen::Index r = 0; r < jacobian.rows(); ++r) {
+    const bool is_force = r < mechanism.linear_rows();
+    const Jacobian rows = is_force ? jacobian.topRows(mechanism.linear_rows())
+                                   : jacobian.bottomRows(jacobian.rows() - mechanism.linear_rows());
+    const Eigen::Index row = is_force ? r : r - mechanism.linear_rows();
+    ToolVector direction = ToolVector::Unit(rows.rows(), row);
+    const double forwards = load_limit(rows, range, direction).value;
+    direction = -direction;
+    loads[r] = std::min(forwards, load_limit(rows, range, direction).value);
+  }
+  return loads;
+}
+
+std::optional<HomePosture> home_posture(const Mechanism& mechanism, const TorqueSource& continuous,
+                                        const TorqueSource& peak) {
+  HomePosture home;
+  home.active.resize(mechanism.active_count());
+  for (int i = 0; i < home.active.size(); ++i)
+    home.active[i] = mechanism.home_guess()[mechanism.active_joint(i)];
+  const Solution solution = solve_forward(mechanism, home.active);
+  if (!solution) return std::nullopt;
+  const Posture& posture = *solution.posture;
+  home.tool = posture.tool();
+  const Rates rate = rates(posture);
+  home.jacobian = rate.tool;
+  const int linear = mechanism.linear_rows();
+  if (linear > 0) home.translation = dexterity(Jacobian(rate.tool.topRows(linear)));
+  if (mechanism.tool_turns())
+    home.rotation = dexterity(Jacobian(rate.tool.bottomRows(rate.tool.rows() - linear)));
+  home.gravity_torques = gravity_torques(posture, rate);
+  if (continuous) home.continuous_loads = axis_loads(mechanism, rate.tool, continuous(posture));
+  if (peak) home.peak_loads = axis_loads(mechanism, rate.tool, peak(posture));
+  return home;
+}
+
+}  // namespace
+
+ArmSheet arm_sheet(const Mechanism& mechanism, const TorqueSource& continuous, const TorqueSource& peak,
+                   const ActiveVector& joint_step, const ArmSheetOptions& options) {
+  const Effort quiet{.threads = options.effort.threads, .cancel = options.effort.cancel};
+  const auto report = [&](double fraction) {
+    if (options.effort.progress) options.effort.progress(fraction);
+  };
+  ArmSheet sheet;
+  sheet.continuous = sweep_postures(
+      mechanism, {.samples = options.postures, .torque = continuous, .joint_step = joint_step}, quiet);
+  report(0.2);
+  if (peak) sheet.peak = sweep_postures(mechanism, {.samples = options.postures, .torque = peak}, quiet);
+  report(0.3);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int end = 0; end < 2; ++end) {
+      const double sign = end == 0 ? -1.0 : 1.0;
+      sheet.ends[axis][end] = farthest_along(mechanism, sign * Vector3::Unit(axis));
+      sheet.ends[axis][end].distance *= sign;
+    }
+  }
+  sheet.farthest = farthest_from(mechanism, Vector3::Zero());
+  sheet.home = home_posture(mechanism, continuous, peak);
+  report(0.4);
+  sheet.complete = sheet.continuous.complete && (!sheet.peak || sheet.peak->complete);
+  if (reach_obstacle(mechanism) || !sheet.complete) return sheet;
+
+  const ReachMap map = reach_map(mechanism, {.samples = options.reach_postures}, quiet);
+  report(0.7);
+  ReachSheet reach{.volume = reachable_volume(map), .inscribed = inscribed_shapes(map)};
+  Vector3 through = reach.inscribed.sphere.centre;
+  if (sheet.home && map.contains(sheet.home->tool.position)) through = sheet.home->tool.position;
+  if (options.slice_postures > 0) {
+    reach.slices = slice_reach(mechanism, map, through, options.slice_postures, quiet);
+  }
+  sheet.complete = map.complete;
+  sheet.reach = std::move(reach);
+  report(1.0);
+  return sheet;
+}
+
+}  // namespace zwidth

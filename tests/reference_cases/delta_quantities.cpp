@@ -11,6 +11,12 @@
 namespace zwidth::reference {
 namespace {
 
+double positive(const Inputs& in, const std::string& key) {
+  const double value = in.number(key);
+  if (!(value > 0.0) || !std::isfinite(value)) throw Refusal("invalid_argument");
+  return value;
+}
+
 DeltaGeometry geometry(const Inputs& in) {
   return {.base_radius = in.number("d1_m"),
           .upper_arm = positive(in, "d2_m"),
@@ -22,12 +28,6 @@ Interval window(const Inputs& in) {
   constexpr Interval kAnyAngle = {-1e9, 1e9};
   return in.has("theta_min_deg") ? Interval{in.degrees("theta_min_deg"), in.degrees("theta_max_deg")}
                                  : kAnyAngle;
-}
-
-double positive(const Inputs& in, const std::string& key) {
-  const double value = in.number(key);
-  if (!(value > 0.0) || !std::isfinite(value)) throw Refusal("invalid_argument");
-  return value;
 }
 
 Mechanism mechanism(const Inputs& in) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -69,8 +70,10 @@ DeltaState state(const Inputs& in) {
 
 DeltaState regular_state(const Inputs& in) {
   const DeltaState answer = state(in);
-  // What rounding leaves of det R/d3^3 = 0: forward kinematics takes a root of a difference that cancels.
-  const double rounding = in.has("theta_rad") ? 1e-7 : 1e-12;
+  // What rounding leaves of det R/d3^3 = 0: forward kinematics takes a root of a difference that cancels, and
+  // so does a leg that is stretched.
+  const double legs = answer.inverse_singularity().cwiseAbs().minCoeff();
+  const double rounding = in.has("theta_rad") ? 1e-7 : std::clamp(1e-15 / legs, 1e-12, 1e-7);
   if (std::abs(answer.direct_singularity()) < rounding) throw Refusal("singular");
   return answer;
 }

@@ -162,17 +162,18 @@ double links_mass(const Vector3& length, const Vector3& outer, double ratio, dou
 }
 
 void device_figures(Figures& figures, const RCubeDescription& device) {
-  const Vector3 printed_sizes(0.015, 0.012, 0.0072), cut(0.111, 0.074, 0.121),
+  const Vector3 printed_sizes(0.015, 0.012, 0.0072),
       length(device.drive_link, device.inner_link, device.outer_link);
+  constexpr double kFibreDensity = 1910.0;  // appendix A [kg/m^3]
   figures.under("Table 7.9: the chosen design, from devices/r-cube.toml");
   figures.add("T7.9.workspace", "edge of the cube-shaped workspace", kMillimetre, 0, 120.0,
               device.drive_link * (std::sin(device.joint_range.max) - std::sin(device.joint_range.min)));
   read_otherwise(figures.add("T7.9.mass", "mass of the nine links", kGram, 1, 77.7,
-                             links_mass(cut, printed_sizes, kRatio, 1800.0)),
-                 "1800 kg/m³, lengths cut to whole mm, the sizes of table 7.8 as diameters",
-                 "with the sizes as radii", links_mass(length, 2.0 * printed_sizes, kRatio, 1800.0),
-                 "what 25, 20 and 12 plies of 0.15 mm make; 1910 kg/m³, d/D = 0.768 and whole lengths give "
-                 "77.7 g as well");
+                             links_mass(length, printed_sizes, 0.768, kFibreDensity)),
+                 "1910 kg/m³ as the fibres have, d/D = 0.768, the sizes of table 7.8 as diameters",
+                 "with the sizes as radii", links_mass(length, 2.0 * printed_sizes, kRatio, kFibreDensity),
+                 "what 25, 20 and 12 plies of 0.15 mm make; 1800 kg/m³, d/D = 0.75 and lengths cut to whole mm "
+                 "give 77.75 g as well");
 }
 
 std::vector<Erratum> not_reproduced(const RCubeDescription& device) {

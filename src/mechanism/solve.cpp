@@ -491,9 +491,11 @@ bool stands_elsewhere(const Posture& posture, const SolveOptions& options) {
          internal::rotation_vector(there.rotation * here.rotation.transpose()).norm() > kSame;
 }
 
-// Of the mechanism's own assembly mode, or none.
+// Of the mechanism's own assembly mode, or none. A posture beyond a joint's range is no answer in any mode, and
+// says more of what is in the way.
 Solution own_assembly(Solution solution, const SolveOptions& options) {
-  if (!solution || !stands_elsewhere(*solution.posture, options)) return solution;
+  if (!solution || solution.status == SolveStatus::joint_limit || !stands_elsewhere(*solution.posture, options))
+    return solution;
   solution.status = SolveStatus::unreachable;
   solution.other_assembly = true;
   solution.posture.reset();

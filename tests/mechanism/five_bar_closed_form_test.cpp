@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -136,8 +137,8 @@ TEST(FiveBarClosedForm, GeneralSolverFindsTheSameFourSolutions) {
       }
       EXPECT_LT(nearest, 1e-9);
     }
-    const Vector2 own = closed.front().posture->active();
-    EXPECT_EQ(working_mode(g, own, p), mode);
+    EXPECT_TRUE(std::ranges::any_of(
+        closed, [&](const Solution& one) { return working_mode(g, one.posture->active(), p) == mode; }));
   }
 }
 

@@ -152,14 +152,14 @@ TEST(SolveInverse, ReachesThePointsOfTheWorkspaceAndNoOthers) {
     batch.inside({&x, 1}, {&y, 1}, {&z, 1}, {&inside, 1});
     const Solution solution = solve_inverse(delta, {.position = {x, y, z}});
     const bool reached = solution.status == SolveStatus::reached || solution.status == SolveStatus::degraded;
-    if (solution && solution.conditioning < 1e-6) continue;
+    if (solution.conditioning > 0.0 && solution.conditioning < 1e-6) continue;
     EXPECT_EQ(reached, inside != 0) << x << ' ' << y << ' ' << z;
     in += reached ? 1 : 0;
     if (!solution.other_assembly) continue;
     ++other;
     EXPECT_EQ(solution.status, SolveStatus::unreachable);
     EXPECT_FALSE(solution);
-    EXPECT_EQ(delta_inverse(*delta.delta(), {x, y, z}, {-4.0, 4.0}).status, SolveStatus::reached)
+    EXPECT_LE(delta_inverse(*delta.delta(), {x, y, z}, {-4.0, 4.0}).status, SolveStatus::degraded)
         << "the legs reach it all the same";
   }
   EXPECT_GT(in, 1000);
@@ -172,7 +172,7 @@ TEST(SolveInverse, GeneralSolverKeepsToItsAssemblyModeToo) {
   description.joint_range = {-1.2, 2.0};
   const Mechanism delta(test::with_bodies(description));
   int other = 0;
-  for (int k = 0; k < 3000; ++k) {
+  for (int k = 0; k < 8000; ++k) {
     const Pose tool{.position = {test::uniform(random, -0.1, 0.1), test::uniform(random, -0.1, 0.1),
                                  test::uniform(random, -0.15, 0.0)}};
     const Solution closed = solve_inverse(delta, tool);

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <memory>
 #include <random>
-#include <variant>
 
 #include "model.h"
 #include "verbs.h"
 
+#include "zwidth/description/names.h"
 #include "zwidth/description/problem.h"
 #include "zwidth/mechanism/mobility.h"
 
@@ -104,11 +104,11 @@ int check(const CheckArguments& arguments, const Terminal& terminal) {
       const Mechanism& mechanism = model.mechanism;
       const MobilitySample sample = sample_mobility(mechanism);
       const auto warnings = warnings_of(model, sample);
-      const bool is_delta = std::holds_alternative<DeltaDescription>(model.description.mechanism);
+      const std::string family = family_name(model.description.mechanism);
       entry["ok"] = true;
       entry["name"] = model.description.name;
       entry["title"] = model.description.title;
-      entry["mechanism"] = is_delta ? "delta" : "legs";
+      entry["mechanism"] = family;
       entry["legs"] = mechanism.legs().size();
       entry["joints"] = mechanism.joint_count();
       entry["active_joints"] = mechanism.active_count();
@@ -126,7 +126,7 @@ int check(const CheckArguments& arguments, const Terminal& terminal) {
       entry["warnings"] = warnings;
       sheet.title(device, "no problems");
       sheet.row("device", model.description.name, model.description.title);
-      sheet.row("mechanism", is_delta ? "delta" : "legs",
+      sheet.row("mechanism", family,
                 fmt::format("{} legs, {} joints, {} of them active", mechanism.legs().size(),
                             mechanism.joint_count(), mechanism.active_count()));
       sheet.row("mobility", fmt::format("{} freedoms", sample.least.freedoms),

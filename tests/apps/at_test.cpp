@@ -241,6 +241,20 @@ TEST(At, PointOfTheOtherAssemblyModeIsUnreachableAndSaysSo) {
   EXPECT_EQ(branches[0]["assembly"], "own");
 }
 
+TEST(At, ToolOfAPlaneTakesTwoCoordinatesAndNoPointOutside) {
+  const Outcome two = run({"at", "five-bar", "--position", "10mm,213mm", "--json"});
+  ASSERT_EQ(two.status, 0) << two.err;
+  EXPECT_EQ(two.json()["tool_axes"], json({"x", "y"}));
+  EXPECT_EQ(two.json()["jacobian"].size(), 2u);
+  const json three = run({"at", "five-bar", "--position", "10mm,213mm,0", "--json"}).json();
+  EXPECT_LT(difference(two.json()["joints"], three["joints"]), 1e-12);
+  const Outcome outside = run({"at", "five-bar", "--position", "10mm,213mm,5mm", "--json"});
+  EXPECT_EQ(outside.status, 1);
+  EXPECT_EQ(outside.json()["status"], "unreachable");
+  EXPECT_NE(outside.json()["reason"].get<std::string>().find("5.000 mm"), std::string::npos);
+  EXPECT_EQ(run({"at", "delta", "--position", "0,0"}).status, 2);
+}
+
 TEST(At, UnreachablePointSaysWhichLegHowFarAndTheNearestPoint) {
   const Outcome outcome = run({"at", "delta", "--position", "0,0,0.5", "--json"});
   EXPECT_EQ(outcome.status, 1);

@@ -66,7 +66,8 @@ void add_at(CLI::App& app, Context& context) {
   add_device_arguments(*verb, *arguments);
   verb->add_option("--joints", arguments->joints, "values of the active joints, between commas")
       ->type_name("A,B,...");
-  verb->add_option("--position", arguments->position, "position of the tool")->type_name("X,Y,Z");
+  verb->add_option("--position", arguments->position, "position of the tool; X,Y of one that moves in a plane")
+      ->type_name("X,Y,Z");
   verb->add_option("--load", arguments->load, "force that the device exerts on the hand")
       ->type_name("FX,FY,FZ");
   verb->add_option("--rate", arguments->rate, "rates of the active joints")->type_name("A,B,...");

@@ -13,7 +13,7 @@ namespace {
 /// Why a point lies out of reach of a delta's legs, in words.
 std::string delta_reach(const DeltaGeometry& geometry, const Vector3& p) {
   // Legs with the same complaint share a sentence.
-  std::vector<std::pair<std::string, std::string>> complaints;
+  std::vector<std::pair<std::vector<std::string>, std::string>> complaints;
   for (int leg = 0; leg < 3; ++leg) {
     const double azimuth = delta_azimuth(leg);
     const double outwards = p.x() * std::cos(azimuth) + p.y() * std::sin(azimuth) - geometry.offset();
@@ -30,15 +30,17 @@ std::string delta_reach(const DeltaGeometry& geometry, const Vector3& p) {
     const auto same = std::find_if(complaints.begin(), complaints.end(),
                                    [&](const auto& other) { return other.second == complaint; });
     if (same == complaints.end()) {
-      complaints.emplace_back(fmt::format("leg{}", leg + 1), complaint);
+      complaints.push_back({{fmt::format("leg{}", leg + 1)}, complaint});
     } else {
-      same->first += fmt::format(" and leg{}", leg + 1);
+      same->first.push_back(fmt::format("leg{}", leg + 1));
     }
   }
   std::string text;
   for (const auto& [legs, complaint] : complaints) {
-    text += fmt::format("{}{} {} {}", text.empty() ? "" : "; ", legs,
-                        legs.find(' ') == std::string::npos ? "is" : "are", complaint);
+    std::string names = legs.front();
+    for (size_t i = 1; i < legs.size(); ++i) names += (i + 1 < legs.size() ? ", " : " and ") + legs[i];
+    text +=
+        fmt::format("{}{} {} {}", text.empty() ? "" : "; ", names, legs.size() == 1 ? "is" : "are", complaint);
   }
   return text;
 }
@@ -78,6 +80,31 @@ std::string unsolved(const Found& found, const Mechanism& mechanism, bool by_pos
   return reason.empty() ? "the legs cannot reach this point" : reason;
 }
 
+/// The tool's position in the user's frame: three coordinates, or those that a tool held in a plane has.
+Vector3 position_option(const std::string& text, const Frame& frame) {
+  const auto given = std::count(text.begin(), text.end(), ',') + 1;
+  const bool in_plane = frame.linear() == 2 && given == 2;
+  const std::vector<double> values =
+      option_values("--position", text, std::vector<Dimension>(in_plane ? 2 : 3, Dimension::length));
+  Vector3 position = Vector3::Zero();
+  for (size_t i = 0; i < values.size(); ++i)
+    position[in_plane ? frame.axes[i] : static_cast<int>(i)] = values[i];
+  return position;
+}
+
+/// Takes back a posture that does not put the tool where it is asked for: one held in a plane leaves the rest
+/// out.
+void hold_to_target(Found& found, const Mechanism& mechanism) {
+  if (!found.solution) return;
+  const double off = (found.solution.posture->tool().position - found.target).norm();
+  if (off <= 1e-6 * mechanism.characteristic_length()) return;
+  found.solution.status = SolveStatus::unreachable;
+  found.solution.posture.reset();
+  found.solutions.clear();
+  found.reason =
+      fmt::format("the tool cannot leave its plane, which is {} away from this point", readable(off, "m"));
+}
+
 }  // namespace
 
 Found find_posture(const Model& model, const Arguments& arguments, const Frame& frame) {
@@ -85,15 +112,15 @@ Found find_posture(const Model& model, const Arguments& arguments, const Frame& 
   const bool by_position = !arguments.position.empty();
   Found found;
   if (by_position) {
-    const auto p =
-        option_values("--position", arguments.position, std::vector<Dimension>(3, Dimension::length));
-    found.target = frame.R.transpose() * Vector3(p[0], p[1], p[2]);
+    found.target = frame.R.transpose() * position_option(arguments.position, frame);
     const Pose pose{found.target, Matrix3::Identity()};
     found.solution = solve_inverse(mechanism, pose);
     found.solutions = solve_inverse_all(mechanism, pose);
+    hold_to_target(found, mechanism);
   } else {
     found.solution = solve_forward(mechanism, joint_option("--joints", arguments.joints, mechanism, 0));
   }
+  if (!found.reason.empty()) return found;
   if (!found.solution) {
     found.reason = unsolved(found, mechanism, by_position);
   } else if (found.solution.status == SolveStatus::joint_limit) {

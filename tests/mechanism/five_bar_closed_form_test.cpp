@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <array>
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -137,8 +137,21 @@ TEST(FiveBarClosedForm, GeneralSolverFindsTheSameFourSolutions) {
       }
       EXPECT_LT(nearest, 1e-9);
     }
-    EXPECT_TRUE(std::ranges::any_of(
-        closed, [&](const Solution& one) { return working_mode(g, one.posture->active(), p) == mode; }));
+    // Each mode once. Those that the device's assembly mode does not reach come last and say so.
+    std::array<int, 4> found{};
+    bool others = false;
+    for (const Solution& one : closed) {
+      const Vector2 theta = one.posture->active();
+      const WorkingMode here = working_mode(g, theta, p);
+      for (std::size_t m = 0; m < kWorkingModes.size(); ++m) found[m] += kWorkingModes[m] == here;
+      EXPECT_EQ(one.other_assembly, assembly_mode(g, theta, p) != 1);
+      EXPECT_FALSE(others && !one.other_assembly);
+      others = one.other_assembly;
+      if (here == mode) {
+        EXPECT_EQ(solve_inverse(device, tool).other_assembly, one.other_assembly);
+      }
+    }
+    EXPECT_EQ(found, (std::array<int, 4>{1, 1, 1, 1}));
   }
 }
 

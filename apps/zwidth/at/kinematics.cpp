@@ -5,6 +5,7 @@
 
 #include "zwidth/analysis/dexterity.h"
 #include "zwidth/mechanism/delta.h"
+#include "zwidth/mechanism/five_bar.h"
 
 /// Where the joints and the tool are, and how the one moves with the others.
 
@@ -128,6 +129,42 @@ void write_dexterity(const Situation& at, Answer& answer) {
   answer.cell("manipulability" + unit, manipulability * (metres ? std::pow(100.0, linear) : 1.0), "√ det J Jᵀ");
 }
 
+namespace {
+
+/// What a five-bar's posture is called, and how far it is from being singular.
+void write_five_bar(const FiveBarDescription& five_bar, const Situation& at, Json& entry, Answer& answer) {
+  const FiveBarGeometry geometry = five_bar_geometry(five_bar);
+  const Vector2 theta(at.posture.active()[0], at.posture.active()[1]);
+  const Vector2 position = at.posture.tool().position.head<2>();
+  const FiveBarState state(geometry, theta, position);
+  entry["legs"] = json_array(state.inverse_singularity());
+  entry["couplers"] = json_number(state.direct_singularity());
+  const WorkingMode mode = working_mode(geometry, theta, position);
+  entry["working_mode"] = {mode.left, mode.right};
+  entry["assembly_mode"] = assembly_mode(geometry, theta, position);
+  constexpr double kNear = 1e-4;  // as the solvers call a posture degraded
+  const FiveBarSingularity named = state.singularity(kNear);
+  Json names = Json::array();
+  std::string text;
+  const auto name = [&](const std::string& one) {
+    names.push_back(one);
+    text += (text.empty() ? "" : ", ") + one;
+  };
+  for (std::size_t l = 0; l < 2; ++l) {
+    const std::string leg = l == 0 ? "left leg " : "right leg ";
+    if (named.leg[l] != LegShape::bent) name(leg + to_string(named.leg[l]));
+  }
+  if (named.direct()) name(to_string(named.couplers));
+  entry["names"] = names;
+  if (!text.empty()) answer.page().paragraph("At or near: " + text + ".", 2, Tint::warning);
+  answer.columns(at.mechanism.active_names());
+  answer.cells("distance to leg singularities", state.inverse_singularity(), 1.0, "0: stretched or folded");
+  answer.cell("distance to coupler singularity", state.direct_singularity(),
+              "0: the elbows coincide, or the couplers are in line");
+}
+
+}  // namespace
+
 void write_singularity(const Situation& at, Answer& answer) {
   Json entry;
   entry["closure"] = json_number(at.rates.closure);
@@ -173,6 +210,9 @@ void write_singularity(const Situation& at, Answer& answer) {
     answer.columns(at.mechanism.active_names());
     answer.cells("distance to leg singularities", state.inverse_singularity(), 1.0, "0: stretched or folded");
     answer.cell("distance to platform singularity", state.direct_singularity(), "0: the forearms are coplanar");
+  }
+  if (const auto* five_bar = std::get_if<FiveBarDescription>(&at.model.description.mechanism)) {
+    write_five_bar(*five_bar, at, entry, answer);
   }
   answer.put("singularity", entry);
 }

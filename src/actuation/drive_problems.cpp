@@ -87,9 +87,7 @@ class Finder {
              "amplifier's integral gain scale");
     positive("supply_voltage", drive_.supply_voltage, "supply voltage");
     positive("peak_factor", drive_.peak_factor, "peak factor");
-    if (!std::isfinite(drive_.proportional_gain))
-      wrong("proportional_gain", "", "must be finite", "give the gain");
-    if (!std::isfinite(drive_.integral_gain)) wrong("integral_gain", "", "must be finite", "give the gain");
+    if (problems_.empty()) gains();
     if (drive_.preloader) {
       const FlexureDescription& flexure = *drive_.preloader;
       positive("preloader.flexible_length", flexure.flexible_length, "flexible length");
@@ -98,6 +96,18 @@ class Finder {
       positive("preloader.height", flexure.height, "height");
       positive("preloader.material.elastic_modulus", flexure.material.elastic_modulus, "elastic modulus");
     }
+  }
+
+  void gains() {
+    const CurrentGains gains =
+        gains_from_registers(drive_.proportional_gain, drive_.integral_gain, gain_scale(drive_.amplifier));
+    const auto check_gain = [this](const char* key, double given, double in_units) {
+      if (!std::isfinite(in_units))
+        wrong(key, std::isfinite(given) ? format_quantity(given, Dimension::number) : "",
+              "is beyond any current loop's gain", "give what stands in the amplifier's register");
+    };
+    check_gain("proportional_gain", drive_.proportional_gain, gains.proportional);
+    check_gain("integral_gain", drive_.integral_gain, gains.integral);
   }
 
   void check(const DirectDriveDescription& /*direct*/) {}

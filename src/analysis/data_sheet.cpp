@@ -163,6 +163,20 @@ bool has_mass(const Mechanism& mechanism) {
   return mass > 0.0;
 }
 
+// The spacing, or the next of 1, 2, 5, 10, ... times a power of ten of which few enough points lie in the box.
+double fitting(const Extents& extents, double spacing, double most_points) {
+  const auto points = [&](double h) {
+    const Vector3 size = extents.size();
+    return (size.x() / h + 1.0) * (size.y() / h + 1.0) * (size.z() / h + 1.0);
+  };
+  while (points(spacing) > most_points) {
+    const double power = std::pow(10.0, std::floor(std::log10(spacing) + 1e-9));
+    const double digit = spacing / power;
+    spacing = power * (digit < 1.999 ? 2.0 : digit < 4.999 ? 5.0 : 10.0);
+  }
+  return spacing;
+}
+
 std::optional<PostureSheet> middle_posture(const Mechanism& mechanism, const DataSheet& sheet,
                                            const std::vector<std::optional<Drive>>& drives, bool driven) {
   ActiveVector active(mechanism.active_count());
@@ -314,16 +328,18 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
   }
 
   const bool batch = mechanism.delta().has_value();
-  const double spacing = batch ? options.spacing : std::max(options.spacing, options.general_spacing);
+  WorkspaceSheet workspace;
+  workspace.extents = workspace_extents(mechanism);
+  const double least = batch ? 0.0 : options.general_spacing;
+  const double spacing = fitting(workspace.extents, std::max(options.spacing, least),
+                                 batch ? options.most_points : options.most_costly_points);
   const double inertia_spacing =
-      batch ? options.inertia_spacing : std::max(options.inertia_spacing, options.general_spacing);
+      fitting(workspace.extents, std::max(options.inertia_spacing, least), options.most_costly_points);
   const DriveLimits limits = drive_limits(drives, false);
 
-  WorkspaceSheet workspace;
   workspace.sweep =
       sweep_workspace(mechanism, {.spacing = spacing, .limits = limits, .all_figures = true}, options.effort);
   sheet.complete = workspace.sweep.complete;
-  workspace.extents = workspace_extents(mechanism);
   workspace.volume = workspace_volume(mechanism, {.threads = options.effort.threads});
   workspace.inscribed = inscribed_shapes(mechanism);
   for (int axis = 0; axis < 3 && options.slice_points > 1; ++axis) {

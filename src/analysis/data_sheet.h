@@ -19,9 +19,13 @@
 namespace zwidth {
 
 struct DataSheetOptions {
-  double spacing = 1e-3;          ///< of the workspace lattice for kinematic figures [m]
-  double inertia_spacing = 5e-3;  ///< of the lattice for inertia, which costs more per point [m]
-  double general_spacing = 8e-3;  ///< least spacing of both lattices for mechanisms without batch kernels [m]
+  // The finest lattices; those of a large workspace are coarser by steps of 1, 2, 5, 10, until few enough
+  // points lie in the box around it.
+  double spacing = 1e-3;              ///< of the workspace lattice for kinematic figures [m]
+  double inertia_spacing = 5e-3;      ///< of the lattice for inertia, which costs more per point [m]
+  double general_spacing = 5e-3;      ///< of both for mechanisms without batch kernels [m]
+  double most_points = 3e7;           ///< for kinematic figures with batch kernels
+  double most_costly_points = 1.2e5;  ///< for everything else
   int slice_points = 121;      ///< grid points along the longer side of a map on a plane; 0 leaves the maps out
   int surface_divisions = 24;  ///< of each edge of the joint ranges in the surface mesh; 0 leaves it out
   double max_frequency =

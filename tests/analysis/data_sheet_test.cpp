@@ -165,5 +165,19 @@ TEST(DataSheet, OfAMechanismWithoutAWorkspaceStillTellsTheRest) {
   EXPECT_NEAR(sheet.arm->ends[2][1].distance, 0.1, 1e-12);
 }
 
+TEST(DataSheet, LatticeOfALargeDeviceIsCoarserByRoundSteps) {
+  Description large = test::with_bodies(test::published_delta());
+  auto& delta = std::get<DeltaDescription>(large.mechanism);
+  for (double* length : {&delta.base_radius, &delta.upper_arm, &delta.forearm, &delta.platform_radius})
+    *length *= 20.0;
+  DataSheetOptions options;
+  options.slice_points = options.surface_divisions = options.frequency_points = 0;
+  options.most_points = options.most_costly_points = 2e4;
+  const DataSheet sheet = data_sheet(large, options);
+  ASSERT_TRUE(sheet.workspace.has_value());
+  EXPECT_DOUBLE_EQ(sheet.workspace->sweep.spacing, 0.2);  // in a box of 5.2 x 5.3 x 3.4 m
+  EXPECT_GT(sheet.workspace->sweep.inside, 1000);
+}
+
 }  // namespace
 }  // namespace zwidth

@@ -18,8 +18,10 @@ struct Source {
 };
 
 const std::vector<Source>& sources() {
-  static const std::vector<Source> all = {
-      {"delta", reproduce_delta}, {"five-bar", reproduce_five_bar}, {"r-cube", reproduce_r_cube}};
+  static const std::vector<Source> all = {{"delta", reproduce_delta},
+                                          {"five-bar", reproduce_five_bar},
+                                          {"r-cube", reproduce_r_cube},
+                                          {"seven-dof", reproduce_seven_dof}};
   return all;
 }
 

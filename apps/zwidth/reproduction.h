@@ -89,5 +89,7 @@ Reproduction reproduce_delta(const Catalogue& catalogue);
 Reproduction reproduce_five_bar(const Catalogue& catalogue);
 /// Görgülü 2018.
 Reproduction reproduce_r_cube(const Catalogue& catalogue);
+/// Baser 2006.
+Reproduction reproduce_seven_dof(const Catalogue& catalogue);
 
 }  // namespace zwidth

@@ -5,35 +5,36 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <set>
 
 #include "model.h"
 #include "verbs.h"
 
-#include "zwidth/actuation/drive_problems.h"
-#include "zwidth/analysis/force.h"
+#include "zwidth/analysis/sizing.h"
+#include "zwidth/analysis/statics.h"
+#include "zwidth/description/names.h"
 #include "zwidth/description/units.h"
 #include "zwidth/mechanism/dynamics.h"
 #include "zwidth/mechanism/jacobian.h"
+
+/// `zwidth size`: what loads in postures ask of the drives, against what they have.
 
 namespace zwidth {
 
 namespace {
 
 struct SizeArguments : DeviceArguments {
-  std::string load;
+  std::vector<std::string> loads;
+  std::string kind = "continuous";
+  std::string moment_frame = "base";
+  std::vector<std::string> postures;
+  std::vector<std::string> joints;
   std::string position;
 };
-
-/// Rules of a drive that do not depend on how hard the motor is driven.
-const std::set<std::string> kStanding = {"supply voltage", "least supply voltage", "encoder frequency",
-                                         "wrap spacing",   "cable bend radius",    "sector range"};
 
 /// What one posture asks of one joint.
 struct Loading {
   double gravity = 0.0;     ///< |torque| against gravity [N m]
   double per_newton = 0.0;  ///< largest |torque| per newton of tool force, over its directions [N m/N]
-  double fixed = 0.0;       ///< |torque| of the given load and gravity [N m]
 };
 
 /// The most that any posture asks of one joint.
@@ -43,11 +44,11 @@ struct Requirement {
 };
 
 /// Postures over the whole workspace, its boundary included: a raster of the joint ranges.
-std::vector<Posture> raster(const Mechanism& mechanism) {
+std::vector<SizingPosture> raster(const Mechanism& mechanism) {
   const int n = mechanism.active_count();
   int per_joint = 2;
   while (per_joint < 25 && std::pow(per_joint + 1, n) <= 16000.0) ++per_joint;
-  std::vector<Posture> postures;
+  std::vector<SizingPosture> postures;
   std::vector<int> index(static_cast<size_t>(n), 0);
   for (bool more = true; more;) {
     ActiveVector q(n);
@@ -55,7 +56,7 @@ std::vector<Posture> raster(const Mechanism& mechanism) {
       const Interval range = mechanism.active_range(j);
       q[j] = range.min + range.width() * index[static_cast<size_t>(j)] / (per_joint - 1);
     }
-    if (Solution solution = solve_forward(mechanism, q)) postures.push_back(*solution.posture);
+    if (Solution solution = solve_forward(mechanism, q)) postures.push_back({"", *solution.posture});
     more = false;
     for (int j = 0; j < n && !more; ++j) {
       more = ++index[static_cast<size_t>(j)] < per_joint;
@@ -65,339 +66,504 @@ std::vector<Posture> raster(const Mechanism& mechanism) {
   return postures;
 }
 
-struct SizeMargin {
-  std::string name;
-  double demand = 0.0;
-  double capability = 0.0;
-  std::string unit;
-  bool ok() const { return demand <= capability * (1.0 + 1e-9); }
-  double utilisation() const {
-    return capability > 0.0 ? demand / capability : std::numeric_limits<double>::infinity();
-  }
-};
-
-/// What a joint torque asks of every element of its drive.
-std::vector<SizeMargin> margins_at(const Drive& drive, double joint_torque) {
-  const Motor& motor = drive.description().motor;
-  const Amplifier& amplifier = drive.description().amplifier;
-  const double motor_torque = joint_torque / drive.ratio();
-  const double current = std::abs(drive.current_for_torque(joint_torque));
-  std::vector<SizeMargin> margins;
-  const auto add = [&](const char* name, double demand, double capability, const char* unit) {
-    if (given(demand) && given(capability)) margins.push_back({name, demand, capability, unit});
-  };
-  add("motor torque, continuous", motor_torque, motor.nominal_torque, "N m");
-  add("amplifier current, continuous", current, amplifier.continuous_current, "A");
-  if (const auto& thermal = drive.thermal()) add("winding heat", current, thermal->continuous_current(), "A");
-  if (const auto& capstan = drive.capstan()) {
-    const auto& description = std::get<CapstanDescription>(drive.description().transmission);
-    const CapstanLoads loads = capstan->loads(description.preload, motor_torque);
-    add("cable slip", joint_torque, capstan->slip_torque(description.preload), "N m");
-    add("cable tension", loads.high_tension, description.cable.max_working_load, "N");
-    add("motor bearing, radial", loads.bearing_radial, motor.max_radial_load, "N");
-    add("motor bearing, axial", loads.bearing_axial, motor.max_axial_load, "N");
-  }
-  return margins;
+std::vector<double> parsed(const char* option, const std::string& text,
+                           const std::vector<Dimension>& dimensions) {
+  const ParsedQuantities values = parse_quantity_list(text, dimensions);
+  if (!values)
+    throw InputError(fmt::format("{} \"{}\": {}{}", option, text, values.rule,
+                                 values.advice.empty() ? "" : "; " + values.advice));
+  return values.values;
 }
 
-/// Which limit a drive meets first at a joint torque, or nothing.
-std::string first_failure(const Drive& drive, double joint_torque) {
-  const SizeMargin* worst = nullptr;
-  const auto margins = margins_at(drive, joint_torque);
-  for (const SizeMargin& margin : margins) {
-    if (!margin.ok() && (worst == nullptr || margin.utilisation() > worst->utilisation())) worst = &margin;
+template <class Enum>
+Enum chosen(const char* option, const std::string& text,
+            const std::vector<std::pair<std::string, Enum>>& choices) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) {
+    if (name == text) return value;
+    names.push_back(name);
   }
-  return worst == nullptr ? "" : worst->name;
+  throw InputError(fmt::format("{} \"{}\": is not known; {}", option, text, suggest(text, names)));
 }
 
-struct Candidate {
-  std::string kind;
-  std::string name;
-  bool used = false;
-  bool fits = false;
-  double continuous = 0.0;  ///< joint torque that the drive could then hold [N m]
-  std::string reason;
-};
-
-/// The drive with each part of the catalogue in turn.
-std::vector<Candidate> candidates(const Drive& drive, double joint_torque) {
-  std::vector<Candidate> list;
-  const auto try_part = [&](const char* kind, const PartInfo& info, const std::string& used,
-                            const DriveDescription& description) {
-    Candidate candidate{kind, info.name, info.name == used, false, 0.0, ""};
-    const std::vector<Problem> problems = drive_problems(description, "drive");
-    if (problems.empty()) {
-      const Drive other(description, drive.joint_range());
-      candidate.continuous = other.continuous_torque().usable;
-      candidate.reason = first_failure(other, joint_torque);
-      // Rules that the present drive breaks are its own affair.
-      const auto present = drive.margins();
-      for (const Margin& margin : other.margins()) {
-        const auto same = std::find_if(present.begin(), present.end(),
-                                       [&](const Margin& m) { return m.name == margin.name; });
-        const bool broken_already = same != present.end() && !same->ok;
-        if (candidate.reason.empty() && !margin.ok && kStanding.contains(margin.name) && !broken_already)
-          candidate.reason = margin.name;
-      }
-      candidate.fits = candidate.reason.empty();
-    } else {
-      const std::string& rule = problems.front().rule;
-      candidate.reason = rule.substr(0, rule.find(':'));  // what follows explains
-    }
-    list.push_back(candidate);
-  };
-  for (const Motor& motor : catalogue().all<Motor>()) {
-    DriveDescription description = drive.description();
-    description.motor = motor;
-    try_part("motor", motor.info, drive.description().motor.info.name, description);
+/// The entry of a list of the description that has this name.
+template <class Named>
+const Named& named(const char* option, const std::string& text, const std::vector<Named>& list,
+                   const char* what) {
+  std::vector<std::string> names;
+  for (const Named& one : list) {
+    if (one.name == text) return one;
+    names.push_back(one.name);
   }
-  for (const Amplifier& amplifier : catalogue().all<Amplifier>()) {
-    DriveDescription description = drive.description();
-    description.amplifier = amplifier;
-    try_part("amplifier", amplifier.info, drive.description().amplifier.info.name, description);
-  }
-  if (const auto* capstan = std::get_if<CapstanDescription>(&drive.description().transmission)) {
-    for (const Cable& cable : catalogue().all<Cable>()) {
-      DriveDescription description = drive.description();
-      std::get<CapstanDescription>(description.transmission).cable = cable;
-      try_part("cable", cable.info, capstan->cable.info.name, description);
-    }
-  }
-  return list;
+  throw InputError(names.empty() ? fmt::format("{} \"{}\": the device file has no [[{}]]", option, text, what)
+                                 : fmt::format("{} \"{}\": is no [[{}]] of the device file; {}", option, text,
+                                               what, suggest(text, names)));
 }
 
-class Sizing {
+LoadDescription parsed_load(const SizeArguments& arguments, const Description& description,
+                            const Mechanism& mechanism, const std::string& text) {
+  // Anything that starts like a number is one.
+  const bool numbers = text.find_first_of("+-.0123456789") == 0;
+  if (!numbers) return named("--load", text, description.loads, "load");
+  const auto commas = std::count(text.begin(), text.end(), ',');
+  if (commas != 2 && commas != 5) {
+    throw InputError(fmt::format(
+        "--load \"{}\": has {} entries; give three (a force) or six (a force and a moment)", text, commas + 1));
+  }
+  std::vector<Dimension> dimensions(3, Dimension::force);
+  if (commas == 5) dimensions.insert(dimensions.end(), 3, Dimension::torque);
+  const std::vector<double> values = parsed("--load", text, dimensions);
+  LoadDescription load;
+  load.name = text;
+  load.force = Vector3(values[0], values[1], values[2]);
+  if (commas == 5) load.moment = Vector3(values[3], values[4], values[5]);
+  if (!load.moment.isZero(0.0) && !mechanism.tool_turns()) {
+    throw InputError(
+        fmt::format("--load \"{}\": the tool of {} does not turn, so it takes no moment; give three "
+                    "numbers",
+                    text, description.name));
+  }
+  load.kind = chosen("--kind", arguments.kind, load_kind_names());
+  load.moment_frame = chosen("--moment-frame", arguments.moment_frame, moment_frame_names());
+  return load;
+}
+
+/// The posture of given joints; a posture that is outside the ranges counts, one that does not close is an
+/// error.
+SizingPosture posture_of(const Mechanism& mechanism, const std::string& name, const ActiveVector& joints) {
+  const Solution solution = solve_forward(mechanism, joints);
+  if (!solution)
+    throw InputError(fmt::format("posture \"{}\": {}; see `zwidth at {}`", name, to_string(solution.status),
+                                 mechanism.name()));
+  return {name, *solution.posture};
+}
+
+std::string bar(double utilisation) {
+  const int cells = static_cast<int>(std::lround(std::clamp(utilisation, 0.0, 1.0) * 12));
+  std::string text;
+  for (int i = 0; i < 12; ++i) text += i < cells ? "█" : "░";
+  return text;
+}
+
+std::string percent(double share) {
+  return std::isfinite(share) ? fmt::format("{} %", number(100.0 * share, 3)) : "–";
+}
+
+class Answer {
  public:
-  Sizing(const Model& model, const SizeArguments& arguments, const Terminal& terminal)
+  Answer(const Model& model, const SizeArguments& arguments, const Terminal& terminal)
       : model_(model), mechanism_(model.mechanism), arguments_(arguments), sheet_(terminal) {}
 
   int run() {
-    std::vector<Posture> postures;
-    std::string where = "anywhere in the workspace";
-    if (arguments_.position.empty()) {
-      postures = raster(mechanism_);
-      if (postures.empty()) throw InputError("the legs close nowhere in the joint ranges; see `zwidth check`");
+    loads_ = wanted_loads();
+    if (!find_postures()) return kNo;
+    document_["device"] = model_.description.name;
+    document_["where"] = where_key_;
+    if (loads_.empty()) {
+      guaranteed_force();
     } else {
-      const auto p = parsed("--position", arguments_.position, Dimension::length);
-      const Solution solution = solve_inverse(mechanism_, Pose{Vector3(p[0], p[1], p[2]), Matrix3::Identity()});
-      if (!solution || solution.status == SolveStatus::joint_limit) {
-        complain(fmt::format("{} cannot be reached: {}; see `zwidth at {} --position {}`", arguments_.position,
-                             to_string(solution.status), arguments_.device, arguments_.position));
-        if (arguments_.json)
-          print_json(Json{{"device", model_.description.name}, {"status", to_string(solution.status)}});
-        return kNo;
-      }
-      postures.push_back(*solution.posture);
-      where = "at " + arguments_.position;
+      load_cases();
     }
-    std::optional<Vector3> load;
-    if (!arguments_.load.empty()) {
-      const auto f = parsed("--load", arguments_.load, Dimension::force);
-      load = Vector3(f[0], f[1], f[2]);
-    }
-    ask(postures, load);
-    if (!load) guaranteed_force(postures);
-    requirements(postures, load);
-    return answer(where, load);
-  }
-
- private:
-  static std::vector<double> parsed(const char* option, const std::string& text, Dimension dimension) {
-    const ParsedQuantities values = parse_quantity_list(text, std::vector<Dimension>(3, dimension));
-    if (!values)
-      throw InputError(fmt::format("{} \"{}\": {}{}", option, text, values.rule,
-                                   values.advice.empty() ? "" : "; " + values.advice));
-    return values.values;
-  }
-
-  void ask(const std::vector<Posture>& postures, const std::optional<Vector3>& load) {
-    const int n = mechanism_.active_count();
-    loadings_.resize(postures.size() * static_cast<size_t>(n));
-    for (size_t i = 0; i < postures.size(); ++i) {
-      const Rates rate_maps = rates(postures[i]);
-      const Jacobian J = rate_maps.tool.topRows(3);
-      const ActiveVector gravity = gravity_torques(postures[i], rate_maps);
-      const ActiveVector fixed = load ? ActiveVector(gravity + torques_for_load(J, *load)) : gravity;
-      for (int j = 0; j < n; ++j) {
-        loadings_[i * static_cast<size_t>(n) + static_cast<size_t>(j)] = {std::abs(gravity[j]), J.col(j).norm(),
-                                                                          std::abs(fixed[j])};
-      }
-    }
-  }
-
-  /// Largest force that can be held in every direction at every posture, on top of gravity.
-  void guaranteed_force(const std::vector<Posture>& postures) {
-    const int n = mechanism_.active_count();
-    const ActiveVector limit = model_.continuous_torque();
-    force_ = std::numeric_limits<double>::infinity();
-    for (size_t i = 0; i < postures.size(); ++i) {
-      for (int j = 0; j < n; ++j) {
-        const Loading& loading = loadings_[i * static_cast<size_t>(n) + static_cast<size_t>(j)];
-        if (loading.per_newton > 0.0)
-          force_ = std::min(force_, (limit[j] - loading.gravity) / loading.per_newton);
-      }
-    }
-    force_ = std::max(0.0, force_);
-  }
-
-  void requirements(const std::vector<Posture>& postures, const std::optional<Vector3>& load) {
-    const int n = mechanism_.active_count();
-    required_.assign(static_cast<size_t>(n), {});
-    gravity_.assign(static_cast<size_t>(n), {});
-    for (size_t i = 0; i < postures.size(); ++i) {
-      for (int j = 0; j < n; ++j) {
-        const Loading& loading = loadings_[i * static_cast<size_t>(n) + static_cast<size_t>(j)];
-        const double torque = load ? loading.fixed : loading.gravity + force_ * loading.per_newton;
-        auto& required = required_[static_cast<size_t>(j)];
-        if (torque >= required.torque) required = {torque, postures[i].tool().position};
-        auto& gravity = gravity_[static_cast<size_t>(j)];
-        if (loading.gravity >= gravity.torque) gravity = {loading.gravity, postures[i].tool().position};
-      }
-    }
-  }
-
-  int answer(const std::string& where, const std::optional<Vector3>& load) {
-    const std::string force_text =
-        load ? fmt::format("the load ({}) N", fmt::format("{:g}, {:g}, {:g}", load->x(), load->y(), load->z()))
-             : fmt::format("{} in every direction", quantity(force_, 1.0, "N"));
-    Json document;
-    document["device"] = model_.description.name;
-    document["where"] = arguments_.position.empty() ? "workspace" : "position";
-    if (load) {
-      document["load"] = json_array(*load);
-    } else {
-      document["guaranteed_force"] = json_number(force_);
-    }
-    sheet_.title(fmt::format("{}: sizing of the drives", model_.description.name), where);
-    sheet_.paragraph(
-        load ? fmt::format("For {} on the hand, {}, on top of the device's own weight.", force_text, where)
-             : fmt::format("The drives can hold {} {}, for as long as one likes, on top of the device's own "
-                           "weight. Another load: --load FX,FY,FZ.",
-                           force_text, where));
-    sheet_.heading("Torque");
-    Json joints = Json::array();
-    std::vector<std::vector<std::string>> rows;
-    bool all_good = true;
-    for (int j = 0; j < mechanism_.active_count(); ++j) {
-      const auto index = static_cast<size_t>(j);
-      const Drive& drive = *model_.drives[index];
-      const double continuous = drive.continuous_torque().usable;
-      const double peak = drive.peak_torque().usable;
-      const bool good = required_[index].torque <= continuous * (1.0 + 1e-9);
-      all_good = all_good && good;
-      Json entry;
-      entry["joint"] = mechanism_.active_names()[index];
-      entry["required"] = json_number(required_[index].torque);
-      entry["required_at"] = json_array(required_[index].at);
-      entry["gravity"] = json_number(gravity_[index].torque);
-      entry["continuous"] = json_number(continuous);
-      entry["peak"] = json_number(peak);
-      entry["ok"] = good;
-      joints.push_back(entry);
-      const Vector3 at = required_[index].at * kMilli;
-      rows.push_back({mechanism_.active_names()[index], number(required_[index].torque),
-                      number(gravity_[index].torque), number(continuous), number(peak),
-                      fmt::format("{} %", number(100.0 * required_[index].torque / continuous, 3)),
-                      good ? "✓" : "✗", fmt::format("{:.0f}, {:.0f}, {:.0f}", at.x(), at.y(), at.z())});
-    }
-    sheet_.table({"joint", "required", "gravity", "continuous", "peak N m", "used", "", "worst at mm"}, rows);
-    document["joints"] = joints;
-    Json drives = Json::array();
-    std::vector<const DriveDescription*> done;
-    for (int j = 0; j < mechanism_.active_count(); ++j) {
-      const Drive& drive = *model_.drives[static_cast<size_t>(j)];
-      // Joints that share a drive's description are answered once, for the one that is asked most.
-      const bool seen = std::any_of(done.begin(), done.end(), [&](const DriveDescription* other) {
-        return *other == drive.description();
-      });
-      if (seen) continue;
-      done.push_back(&drive.description());
-      std::string names;
-      double torque = 0.0;
-      for (int k = 0; k < mechanism_.active_count(); ++k) {
-        if (!(model_.drives[static_cast<size_t>(k)]->description() == drive.description())) continue;
-        names += (names.empty() ? "" : ", ") + mechanism_.active_names()[static_cast<size_t>(k)];
-        torque = std::max(torque, required_[static_cast<size_t>(k)].torque);
-      }
-      drives.push_back(of_drive(drive, names, torque, all_good));
-    }
-    document["drives"] = drives;
-    document["ok"] = all_good;
+    margins_and_parts();
+    document_["ok"] = ok_;
     sheet_.gap();
-    sheet_.paragraph(all_good ? "The drives suffice." : "The drives do not suffice.", 2,
-                     all_good ? Tint::good : Tint::bad);
+    sheet_.paragraph(ok_ ? "The drives suffice." : "The drives do not suffice.", 2,
+                     ok_ ? Tint::good : Tint::bad);
     if (arguments_.json) {
-      print_json(document);
+      print_json(document_);
     } else {
       print(sheet_.text());
     }
-    return all_good ? kDone : kNo;
+    return ok_ ? kDone : kNo;
   }
 
-  Json of_drive(const Drive& drive, const std::string& names, double torque, bool& all_good) {
+ private:
+  std::vector<LoadDescription> wanted_loads() const {
+    if (arguments_.loads.empty()) return model_.description.loads;
+    std::vector<LoadDescription> loads;
+    for (const std::string& text : arguments_.loads)
+      loads.push_back(parsed_load(arguments_, model_.description, mechanism_, text));
+    return loads;
+  }
+
+  /// False if the position that was asked for cannot be reached, which it then says.
+  bool find_postures() {
+    const std::vector<Dimension> dimensions = active_joint_dimensions(model_.description.mechanism);
+    for (const std::string& text : arguments_.joints) {
+      const std::vector<double> values = parsed("--joints", text, dimensions);
+      postures_.push_back(
+          posture_of(mechanism_, text, Eigen::Map<const Eigen::VectorXd>(values.data(), values.size())));
+    }
+    std::vector<PostureDescription> wanted;
+    for (const std::string& text : arguments_.postures)
+      wanted.push_back(named("--posture", text, model_.description.postures, "posture"));
+    const bool nothing_said = arguments_.joints.empty() && wanted.empty() && arguments_.position.empty();
+    if (nothing_said && !loads_.empty()) wanted = model_.description.postures;
+    for (const PostureDescription& one : wanted) {
+      postures_.push_back(posture_of(mechanism_, one.name,
+                                     Eigen::Map<const Eigen::VectorXd>(one.joints.data(), one.joints.size())));
+    }
+    if (!arguments_.position.empty() && !reach(arguments_.position)) return false;
+    where_ = "in the postures given";
+    where_key_ = "postures";
+    if (!arguments_.position.empty() && postures_.size() == 1) {
+      where_ = "at " + arguments_.position;
+      where_key_ = "position";
+    }
+    if (postures_.empty()) {
+      where_ = "anywhere in the workspace";
+      where_key_ = "workspace";
+      postures_ = raster(mechanism_);
+      if (postures_.empty()) throw InputError("the legs close nowhere in the joint ranges; see `zwidth check`");
+    }
+    return true;
+  }
+
+  bool reach(const std::string& text) {
+    const std::vector<double> p = parsed("--position", text, std::vector<Dimension>(3, Dimension::length));
+    if (mechanism_.tool_turns()) {
+      throw InputError(
+          fmt::format("--position \"{}\": the tool of {} turns, so a position leaves its posture open; "
+                      "give --joints or --posture",
+                      text, model_.description.name));
+    }
+    const Solution solution = solve_inverse(mechanism_, Pose{Vector3(p[0], p[1], p[2]), Matrix3::Identity()});
+    if (!solution || solution.status == SolveStatus::joint_limit) {
+      complain(fmt::format("{} cannot be reached: {}; see `zwidth at {} --position {}`", text,
+                           to_string(solution.status), arguments_.device, text));
+      if (arguments_.json)
+        print_json(Json{{"device", model_.description.name}, {"status", to_string(solution.status)}});
+      return false;
+    }
+    postures_.push_back({text, *solution.posture});
+    return true;
+  }
+
+  // ------------------------------------------------------------------------------- without loads
+
+  /// Largest force that can be held in every direction in every posture, on top of gravity.
+  void guaranteed_force() {
+    const int n = mechanism_.active_count();
+    const ActiveVector limit = model_.continuous_torque();
+    std::vector<Loading> loadings(postures_.size() * static_cast<size_t>(n));
+    double force = std::numeric_limits<double>::infinity();
+    for (size_t i = 0; i < postures_.size(); ++i) {
+      const Rates rate_maps = rates(postures_[i].posture);
+      const Jacobian J = rate_maps.tool.topRows(mechanism_.linear_rows());
+      const ActiveVector gravity = gravity_torques(postures_[i].posture, rate_maps);
+      for (int j = 0; j < n; ++j) {
+        const Loading loading{std::abs(gravity[j]), J.col(j).norm()};
+        loadings[i * static_cast<size_t>(n) + static_cast<size_t>(j)] = loading;
+        // What rounding leaves of an axis through the tool feels no force.
+        if (loading.per_newton > kZeroRow * J.norm() && !mechanism_.is_free(j))
+          force = std::min(force, (limit[j] - loading.gravity) / loading.per_newton);
+      }
+    }
+    force = std::max(0.0, force);
+    std::vector<Requirement> required(static_cast<size_t>(n)), gravity(static_cast<size_t>(n));
+    for (size_t i = 0; i < postures_.size(); ++i) {
+      const Vector3& at = postures_[i].posture.tool().position;
+      for (int j = 0; j < n; ++j) {
+        const auto index = static_cast<size_t>(j);
+        const Loading& loading = loadings[i * static_cast<size_t>(n) + index];
+        const double torque = loading.gravity + force * loading.per_newton;
+        if (torque >= required[index].torque) required[index] = {torque, at};
+        if (loading.gravity >= gravity[index].torque) gravity[index] = {loading.gravity, at};
+      }
+    }
+    document_["guaranteed_force"] = json_number(force);
+    sheet_.title(fmt::format("{}: sizing of the drives", model_.description.name), where_);
+    sheet_.paragraph(
+        fmt::format("The drives can hold {} in every direction {}, for as long as one likes, on top of the "
+                    "device's own weight. Another load: --load FX,FY,FZ.",
+                    quantity(force, 1.0, "N"), where_));
+    sheet_.heading("Torque");
+    Json joints = Json::array();
+    std::vector<std::vector<std::string>> rows;
+    const ActiveVector peak = model_.peak_torque();
+    for (int j = 0; j < n; ++j) {
+      if (mechanism_.is_free(j)) continue;
+      const auto index = static_cast<size_t>(j);
+      const std::string& name = mechanism_.active_names()[index];
+      const bool good = required[index].torque <= limit[j] * (1.0 + 1e-9);
+      ok_ = ok_ && good;
+      joints.push_back({{"joint", name},
+                        {"required", json_number(required[index].torque)},
+                        {"required_at", json_array(required[index].at)},
+                        {"gravity", json_number(gravity[index].torque)},
+                        {"continuous", json_number(limit[j])},
+                        {"peak", json_number(peak[j])},
+                        {"ok", good}});
+      const Vector3 at = required[index].at * kMilli;
+      rows.push_back({name, number(required[index].torque), number(gravity[index].torque), number(limit[j]),
+                      number(peak[j]), percent(required[index].torque / limit[j]), good ? "✓" : "✗",
+                      fmt::format("{:.0f}, {:.0f}, {:.0f}", at.x(), at.y(), at.z())});
+      demands_.push_back({required[index].torque, 0.0});
+    }
+    sheet_.table({"joint", "required", "gravity", "continuous", "peak N m", "used", "", "worst at mm"}, rows);
+    document_["joints"] = joints;
+  }
+
+  // ---------------------------------------------------------------------------------- with loads
+
+  void load_cases() {
+    const Sizing sizing = size_drives(postures_, loads_, capability_of(model_.drives));
+    ok_ = sizing.ok;
+    const bool one_load = loads_.size() == 1 && arguments_.loads.size() == 1;
+    if (one_load) document_["load"] = load_numbers(loads_[0]);
+    Json loads = Json::array();
+    for (const LoadDescription& load : loads_) {
+      loads.push_back({{"name", load.name},
+                       {"kind", to_string(load.kind)},
+                       {"force", json_array(load.force)},
+                       {"moment", json_array(load.moment)},
+                       {"moment_frame", to_string(load.moment_frame)}});
+    }
+    document_["loads"] = loads;
+    sheet_.title(fmt::format("{}: sizing of the drives", model_.description.name),
+                 where_key_ == "postures" ? fmt::format("{} posture{}, {} load{}", postures_.size(),
+                                                        postures_.size() == 1 ? "" : "s", loads_.size(),
+                                                        loads_.size() == 1 ? "" : "s")
+                                          : where_);
+    if (one_load) {
+      const Vector3& f = loads_[0].force;
+      sheet_.paragraph(
+          fmt::format("For the {} load ({:g}, {:g}, {:g}) N on the hand, {}, on top of the device's own "
+                      "weight.",
+                      to_string(loads_[0].kind), f.x(), f.y(), f.z(), where_));
+    } else {
+      sheet_.paragraph(
+          fmt::format("For every load {}, on top of the device's own weight: the worst of each kind.", where_));
+    }
+    const bool published = std::any_of(loads_.begin(), loads_.end(), [](const LoadDescription& load) {
+      return load.moment_frame == MomentFrame::published && !load.moment.isZero(0.0);
+    });
+    if (published) {
+      sheet_.paragraph(
+          "Moments are turned as the source's tables have them (moment_frame = \"published\"), which is not "
+          "physics; `--set load.moment_frame=base` takes them as they are.",
+          2, Tint::warning);
+      notes_.push_back("moments in the frame \"published\" reproduce a source's tables; they are not physics");
+    }
+    sheet_.heading("Torque");
+    joint_table(sizing);
+    if (where_key_ == "postures") case_list(sizing);
+    for (int j = 0; j < mechanism_.active_count(); ++j) {
+      if (mechanism_.is_free(j)) continue;
+      const auto index = static_cast<size_t>(j);
+      demands_.push_back({std::abs(sizing.continuous[index].torque), std::abs(sizing.peak[index].torque)});
+    }
+    if (!notes_.empty()) document_["notes"] = notes_;
+  }
+
+  Json load_numbers(const LoadDescription& load) const {
+    Json numbers = json_array(load.force);
+    if (mechanism_.tool_turns()) {
+      for (const double value : load.moment) numbers.push_back(json_number(value));
+    }
+    return numbers;
+  }
+
+  std::string posture_name(int index) const {
+    const SizingPosture& posture = postures_[static_cast<size_t>(index)];
+    if (!posture.name.empty()) return posture.name;
+    const Vector3 at = posture.posture.tool().position * kMilli;
+    return fmt::format("{:.0f}, {:.0f}, {:.0f} mm", at.x(), at.y(), at.z());
+  }
+
+  void joint_table(const Sizing& sizing) {
+    Json joints = Json::array();
+    std::vector<std::vector<std::string>> rows;
+    for (int j = 0; j < mechanism_.active_count(); ++j) {
+      const auto index = static_cast<size_t>(j);
+      const std::string& name = mechanism_.active_names()[index];
+      const auto& drive = model_.drives[index];
+      double gravity = 0.0;
+      for (const SizingCase& one : sizing.cases) gravity = std::max(gravity, std::abs(one.gravity[j]));
+      const TorqueLimit continuous = drive ? drive->continuous_torque() : TorqueLimit{};
+      const TorqueLimit peak = drive ? drive->peak_torque() : TorqueLimit{};
+      // The kind that is asked most stands for the joint.
+      const JointDemand& worst = sizing.peak[index].utilisation > sizing.continuous[index].utilisation
+                                     ? sizing.peak[index]
+                                     : sizing.continuous[index];
+      const bool good = sizing.continuous[index].ok && sizing.peak[index].ok;
+      Json entry{{"joint", name},
+                 {"required", json_number(std::abs(worst.torque))},
+                 {"required_at",
+                  worst.posture < 0
+                      ? Json(nullptr)
+                      : json_array(postures_[static_cast<size_t>(worst.posture)].posture.tool().position)},
+                 {"gravity", json_number(gravity)},
+                 {"continuous", json_number(continuous.usable)},
+                 {"peak", json_number(peak.usable)},
+                 {"ok", good}};
+      Json demands;
+      for (const LoadKind kind : {LoadKind::continuous, LoadKind::peak}) {
+        const JointDemand& demand = sizing.demands(kind)[index];
+        if (demand.posture < 0) continue;
+        const TorqueLimit& limit = kind == LoadKind::peak ? peak : continuous;
+        const LoadDescription& load = loads_[static_cast<size_t>(demand.load)];
+        Json item{{"required", json_number(std::abs(demand.torque))},
+                  {"available", json_number(demand.available)},
+                  {"utilisation", json_number(demand.utilisation)},
+                  {"ok", demand.ok},
+                  {"limited_by", drive ? to_string(limit.limited_by) : "no drive"},
+                  {"posture", posture_name(demand.posture)},
+                  {"load", load.name}};
+        if (drive) item["motor_torque"] = json_number(drive->motor_torque(std::abs(demand.torque)));
+        demands[to_string(kind)] = item;
+        rows.push_back({name, to_string(kind), number(std::abs(demand.torque)), number(demand.available),
+                        percent(demand.utilisation), demand.ok ? "✓" : "✗",
+                        drive ? to_string(limit.limited_by) : "no drive", posture_name(demand.posture),
+                        load.name});
+      }
+      entry["demands"] = demands;
+      joints.push_back(entry);
+    }
+    sheet_.table({"joint", "kind", "required", "N m there", "used", "", "limit", "posture", "load"}, rows,
+                 false);
+    document_["joints"] = joints;
+  }
+
+  void case_list(const Sizing& sizing) {
+    Json cases = Json::array();
+    for (const SizingCase& one : sizing.cases) {
+      const LoadDescription& load = loads_[static_cast<size_t>(one.load)];
+      cases.push_back({{"posture", posture_name(one.posture)},
+                       {"load", load.name},
+                       {"kind", to_string(load.kind)},
+                       {"torques", json_array(one.torque)},
+                       {"gravity_torques", json_array(one.gravity)}});
+    }
+    document_["cases"] = cases;
+  }
+
+  // ----------------------------------------------------------------------------- drives and parts
+
+  void margins_and_parts() {
+    // Joints that share a drive's description are answered once, for the one that is asked most.
+    struct Group {
+      const Drive* drive;
+      std::string joints;
+      DriveDemand demand;
+    };
+    std::vector<Group> groups;
+    size_t driven = 0;
+    for (int j = 0; j < mechanism_.active_count(); ++j) {
+      if (mechanism_.is_free(j)) continue;
+      const DriveDemand& demand = demands_[driven++];
+      const auto& drive = model_.drives[static_cast<size_t>(j)];
+      if (!drive) continue;
+      auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& other) {
+        return other.drive->description() == drive->description();
+      });
+      if (group == groups.end()) group = groups.insert(groups.end(), Group{&*drive, "", {}});
+      group->joints += (group->joints.empty() ? "" : ", ") + mechanism_.active_names()[static_cast<size_t>(j)];
+      group->demand.continuous = std::max(group->demand.continuous, demand.continuous);
+      group->demand.peak = std::max(group->demand.peak, demand.peak);
+    }
+    Json drives = Json::array();
+    for (const Group& group : groups) drives.push_back(of_drive(*group.drive, group.joints, group.demand));
+    document_["drives"] = drives;
+  }
+
+  Json of_drive(const Drive& drive, const std::string& names, const DriveDemand& demand) {
     Json entry;
     entry["joints"] = names;
-    entry["torque"] = json_number(torque);
-    Json margins = Json::array();
-    std::vector<std::vector<std::string>> rows;
-    for (const SizeMargin& margin : margins_at(drive, torque)) {
-      all_good = all_good && margin.ok();
-      Json item;
-      item["name"] = margin.name;
-      item["demand"] = json_number(margin.demand);
-      item["capability"] = json_number(margin.capability);
-      item["unit"] = margin.unit;
-      item["utilisation"] = json_number(margin.utilisation());
-      item["ok"] = margin.ok();
-      margins.push_back(item);
-      const int cells = static_cast<int>(std::lround(std::clamp(margin.utilisation(), 0.0, 1.0) * 12));
-      std::string bar;
-      for (int i = 0; i < 12; ++i) bar += i < cells ? "█" : "░";
-      rows.push_back(
-          {margin.name, readable(margin.demand, margin.unit), readable(margin.capability, margin.unit),
-           fmt::format("{} %", number(100.0 * margin.utilisation(), 3)), bar, margin.ok() ? "✓" : "✗"});
+    entry["torque"] = json_number(demand.continuous > 0.0 ? demand.continuous : demand.peak);
+    entry["continuous_torque"] = json_number(demand.continuous);
+    entry["peak_torque"] = json_number(demand.peak);
+    Json list = Json::array();
+    for (const LoadKind kind : {LoadKind::continuous, LoadKind::peak}) {
+      const double torque = kind == LoadKind::peak ? demand.peak : demand.continuous;
+      if (torque == 0.0) continue;
+      std::vector<std::vector<std::string>> rows;
+      for (const Margin& margin : load_margins(drive, torque, kind)) {
+        ok_ = ok_ && margin.ok;
+        const double used = margin.utilisation.value_or(std::numeric_limits<double>::infinity());
+        list.push_back({{"kind", to_string(kind)},
+                        {"name", margin.name},
+                        {"demand", json_number(margin.demand)},
+                        {"capability", json_number(margin.capability)},
+                        {"unit", margin.unit},
+                        {"utilisation", json_number(used)},
+                        {"ok", margin.ok},
+                        {"rule", margin.rule}});
+        rows.push_back({margin.name, readable(margin.demand, margin.unit),
+                        readable(margin.capability, margin.unit), percent(used), bar(used),
+                        margin.ok ? "✓" : "✗"});
+      }
+      sheet_.heading(fmt::format("Margins of the drive of {} at {}{}", names, readable(torque, "N m"),
+                                 kind == LoadKind::peak ? " for a short time" : ""));
+      sheet_.table({"", "demand", "limit", "used", "", ""}, rows);
+      if (kind == LoadKind::peak) heat(drive, torque, entry);
     }
-    entry["margins"] = margins;
-    sheet_.heading(fmt::format("Margins of the drive of {} at {}", names, readable(torque, "N m")));
-    sheet_.table({"", "demand", "limit", "used", "", ""}, rows);
+    entry["margins"] = list;
+    if (const std::optional<double> ratio = least_ratio(drive, demand)) {
+      entry["ratio"] = json_number(drive.ratio());
+      entry["least_ratio"] = json_number(*ratio);
+      sheet_.paragraph(fmt::format("Motor and amplifier need a ratio of {} for this; it is {}.",
+                                   trimmed(*ratio, 3), trimmed(drive.ratio(), 4)));
+    }
     Json broken = Json::array();
-    for (const Margin& margin : drive.margins()) {
-      if (margin.ok || !kStanding.contains(margin.name)) continue;
+    for (const Margin& margin : standing_failures(drive)) {
       broken.push_back(margin.name);
       sheet_.paragraph(
           fmt::format("whatever the load, {}: {} of {}; {}", margin.name, readable(margin.demand, margin.unit),
                       readable(margin.capability, margin.unit), margin.rule),
           2, Tint::warning);
     }
-    Json parts = Json::array();
-    rows.clear();
-    for (const Candidate& candidate : candidates(drive, torque)) {
-      Json item;
-      item["kind"] = candidate.kind;
-      item["name"] = candidate.name;
-      item["used"] = candidate.used;
-      item["fits"] = candidate.fits;
-      item["continuous_torque"] = json_number(candidate.continuous);
-      item["reason"] = candidate.reason;
-      parts.push_back(item);
+    entry["broken_rules"] = broken;
+    parts(drive, demand, entry);
+    return entry;
+  }
+
+  void heat(const Drive& drive, double torque, Json& entry) {
+    const auto& thermal = drive.thermal();
+    if (!thermal) return;
+    const std::optional<double> time = thermal->time_to_overheat(drive.current_for_torque(torque));
+    entry["time_at_peak"] = time ? json_number(*time) : Json(nullptr);
+    sheet_.paragraph(time ? fmt::format("From cold the winding bears this for {}.", readable(*time, "s"))
+                          : "The winding bears this for as long as one likes.");
+  }
+
+  void parts(const Drive& drive, const DriveDemand& demand, Json& entry) {
+    Json list = Json::array();
+    std::vector<std::vector<std::string>> rows;
+    for (const DriveCandidate& candidate : drive_candidates(drive, catalogue(), demand)) {
+      list.push_back({{"kind", candidate.kind},
+                      {"name", candidate.name},
+                      {"used", candidate.used},
+                      {"fits", candidate.fits},
+                      {"continuous_torque", json_number(candidate.continuous)},
+                      {"peak_torque", json_number(candidate.peak)},
+                      {"reflected_inertia", json_number(candidate.reflected_inertia)},
+                      {"utilisation", json_number(candidate.utilisation)},
+                      {"reason", candidate.reason}});
+      // Of the many pairs only those that would do are worth a line.
+      if (candidate.kind == "motor and gearhead" && !candidate.fits) continue;
       rows.push_back(
           {candidate.kind, candidate.name, candidate.fits ? readable(candidate.continuous, "N m") : "–",
+           candidate.fits ? readable(candidate.reflected_inertia, "kg m^2", 3) : "–",
            (candidate.fits ? "✓" : "✗ " + candidate.reason) + std::string(candidate.used ? "  in use" : "")});
     }
-    entry["parts"] = parts;
+    entry["parts"] = list;
     sheet_.heading("Parts of the catalogue that would do, all else kept");
-    sheet_.table({"kind", "part", "would hold", ""}, rows, false);
-    return entry;
+    sheet_.table({"kind", "part", "would hold", "felt inertia", ""}, rows, false);
   }
 
   const Model& model_;
   const Mechanism& mechanism_;
   const SizeArguments& arguments_;
   Sheet sheet_;
-  std::vector<Loading> loadings_;
-  std::vector<Requirement> required_;
-  std::vector<Requirement> gravity_;
-  double force_ = 0.0;
+  Json document_;
+  Json notes_ = Json::array();
+  bool ok_ = true;
+  std::vector<LoadDescription> loads_;
+  std::vector<SizingPosture> postures_;
+  std::string where_;
+  std::string where_key_;
+  std::vector<DriveDemand> demands_;  // of each joint that is not free
 };
 
 int size(const SizeArguments& arguments, const Terminal& terminal) {
@@ -406,7 +572,7 @@ int size(const SizeArguments& arguments, const Terminal& terminal) {
     throw InputError(fmt::format(
         "{}: some joints have no drive, so nothing can be sized; add a [[drive]] to the device file",
         model.description.name));
-  return Sizing(model, arguments, terminal).run();
+  return Answer(model, arguments, terminal).run();
 }
 
 }  // namespace
@@ -417,11 +583,27 @@ void add_size(CLI::App& app, Context& context) {
       "  zwidth size delta                                       the force that the drives can always hold\n"
       "  zwidth size delta --load 0,0,10                         10 N upwards, anywhere in the workspace\n"
       "  zwidth size delta --load 0,0,10 --position 0,0,150mm    at one place\n"
+      "  zwidth size seven-dof                                   every [[load]] in every [[posture]] of the "
+      "file\n"
+      "  zwidth size seven-dof --load 0,0,5,0,0,0.1 --joints 0,60deg,0,45deg,0,0,0 --kind peak\n"
       "\nExits 1 if the drives do not suffice.");
   auto arguments = std::make_shared<SizeArguments>();
   add_device_arguments(*verb, *arguments);
-  verb->add_option("--load", arguments->load, "force that the device exerts on the hand, device frame")
-      ->type_name("FX,FY,FZ");
+  verb->add_option(
+          "--load", arguments->loads,
+          "force, or force and moment, that the device exerts on the hand, device frame; or the name of a "
+          "[[load]]; may be repeated. Left out: the loads of the device file")
+      ->type_name("FX,FY,FZ[,MX,MY,MZ]")
+      ->allow_extra_args(false);
+  verb->add_option("--kind", arguments->kind, "how long a load given in numbers lasts: continuous or peak");
+  verb->add_option("--moment-frame", arguments->moment_frame,
+                   "what a moment given in numbers refers to: base or tool");
+  verb->add_option("--posture", arguments->postures, "a [[posture]] of the device file; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  verb->add_option("--joints", arguments->joints, "a posture by its active joints; may be repeated")
+      ->type_name("Q1,Q2,...")
+      ->allow_extra_args(false);
   verb->add_option("--position", arguments->position,
                    "tool position to look at, instead of the whole workspace")
       ->type_name("X,Y,Z");

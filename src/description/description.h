@@ -176,10 +176,16 @@ using MechanismDescription =
 /// `on` names the link: "platform", or "LEG/JOINT" for the link that this joint moves. A delta also knows
 /// "upper_arm" and "forearm", which stand for all three legs; their frame has its origin in the link's inner
 /// joint, x outwards, z up, y = z x x tangential, with the upper arm horizontal and the forearm pointing up.
+///
+/// A body that hangs on one link by a pin and is turned by another, as parallel bars do it, names the other in
+/// `turns_with` and the pin in `pivot`: the pin moves with the first link, and about it the body keeps the
+/// orientation of the second.
 struct BodyDescription {
   std::string on;
-  double mass = 0.0;                  ///< [kg]
-  Vector3 centre = Vector3::Zero();   ///< centre of mass, at the leg's zero posture [m]
+  std::string turns_with = {};       ///< link whose orientation it keeps; empty: that of `on`
+  Vector3 pivot = Vector3::Zero();   ///< where it hangs on `on`, at the leg's zero posture [m]; with turns_with
+  double mass = 0.0;                 ///< [kg]
+  Vector3 centre = Vector3::Zero();  ///< centre of mass, at the leg's zero posture [m]
   Matrix3 inertia = Matrix3::Zero();  ///< about the centre of mass [kg m^2]
   std::string source;                 ///< where the values come from; "chosen: ..." where no source gives them
   Sources sources = {};
@@ -333,6 +339,46 @@ struct PneumaticDriveDescription {
   bool operator==(const PneumaticDriveDescription&) const = default;
 };
 
+// --------------------------------------------------------------------------------------------------- loads
+
+/// How long a load lasts, and so what a drive may give for it.
+enum class LoadKind {
+  continuous,  ///< for ever
+  peak,        ///< for a short time
+};
+
+/// What the components of a moment refer to.
+enum class MomentFrame {
+  base,  ///< the base frame
+  tool,  ///< the tool frame: M in base components is C M, where the columns of C are the tool's axes
+  /// C^T M, the rotation applied the wrong way round, as the torque tables of Baser 2006 (section 5.1) come
+  /// about. There to reproduce them; it is not physics.
+  published,
+};
+
+/// What the tool has to push and turn with, to size the drives for.
+struct LoadDescription {
+  std::string name;
+  Vector3 force = Vector3::Zero();   ///< of the tool on its environment, base frame [N]
+  Vector3 moment = Vector3::Zero();  ///< about the tool point, in `moment_frame` [N m]
+  MomentFrame moment_frame = MomentFrame::base;
+  LoadKind kind = LoadKind::continuous;
+  std::string source = {};
+  Sources sources = {};
+
+  bool operator==(const LoadDescription&) const = default;
+};
+
+/// A posture with a name, by its active joints.
+struct PostureDescription {
+  std::string name;
+  std::vector<double> joints;  ///< in the order of `active_joint_names` [rad] or [m]
+  std::string source = {};
+  Sources sources = {};
+
+  bool operator==(const PostureDescription&) const = default;
+};
+
 // -------------------------------------------------------------------------------------------------- device
 
 struct Description {
@@ -346,6 +392,8 @@ struct Description {
   std::vector<BodyDescription> bodies;
   std::vector<DriveDescription> drives;                     ///< electric ones
   std::vector<PneumaticDriveDescription> pneumatic_drives;  ///< files give both kinds as [[drive]]
+  std::vector<LoadDescription> loads;                       ///< that the device is made for
+  std::vector<PostureDescription> postures;                 ///< that matter: the most extended ones, say
   Sources sources = {};
 
   bool operator==(const Description&) const = default;

@@ -165,6 +165,16 @@ MechanismDescription read_mechanism(TableReader& device) {
 BodyDescription read_body(TableReader& table) {
   BodyDescription body;
   body.on = table.text("on", Need::required, "name the link: \"platform\", \"LEG/JOINT\", ...").value_or("");
+  body.turns_with = table.text("turns_with", Need::optional).value_or("");
+  const std::string_view pivot_advice =
+      "give the point where the body hangs on its link, at the leg's zero posture";
+  const Need pivot_need = body.turns_with.empty() ? Need::optional : Need::required;
+  if (const auto pivot = table.vector("pivot", Dimension::length, pivot_need, pivot_advice)) {
+    body.pivot = *pivot;
+    if (body.turns_with.empty())
+      table.report("pivot", "means nothing without turns_with",
+                   "name the link that turns the body, or leave it out");
+  }
   body.mass =
       table.quantity("mass", Dimension::mass, Need::required, "give the mass, such as \"80 g\"").value_or(0.0);
   const std::string_view centre_advice = "give the centre of mass, such as [\"40 mm\", 0, 0]";
@@ -315,6 +325,37 @@ DriveDescription read_drive(TableReader& table, const Catalogue& catalogue,
   return drive;
 }
 
+// ---------------------------------------------------------------------------------------------------- loads
+
+LoadDescription read_load(TableReader& table) {
+  LoadDescription load;
+  load.name = table.text("name", Need::required, "name the load").value_or("");
+  const std::string_view force_advice =
+      "give the force of the tool on its environment, such as [\"10 N\", 0, 0]";
+  if (const auto force = table.vector("force", Dimension::force, Need::optional, force_advice))
+    load.force = *force;
+  const std::string_view moment_advice = "give the moment about the tool, such as [0, 0, \"0.5 N m\"]";
+  if (const auto moment = table.vector("moment", Dimension::torque, Need::optional, moment_advice))
+    load.moment = *moment;
+  if (const auto frame = table.choice<MomentFrame>("moment_frame", moment_frame_names(), Need::optional))
+    load.moment_frame = *frame;
+  if (const auto kind = table.choice<LoadKind>("kind", load_kind_names(), Need::optional)) load.kind = *kind;
+  table.read_sources(load.source, load.sources, Need::optional);
+  table.finish();
+  return load;
+}
+
+PostureDescription read_posture(TableReader& table, const std::vector<Dimension>& dimensions) {
+  PostureDescription posture;
+  posture.name = table.text("name", Need::required, "name the posture").value_or("");
+  const std::string_view advice = "give the active joints in their order, such as [0, \"90 deg\", \"60 deg\"]";
+  if (auto joints = table.quantities("joints", dimensions, Need::required, advice))
+    posture.joints = std::move(*joints);
+  table.read_sources(posture.source, posture.sources, Need::optional);
+  table.finish();
+  return posture;
+}
+
 }  // namespace
 
 Description read_device_tables(Input& input, const Catalogue& catalogue) {
@@ -346,6 +387,11 @@ Description read_device_tables(Input& input, const Catalogue& catalogue) {
       input.alias(join_path("drive", description.drives.size()), drive.path());
       description.drives.push_back(read_drive(drive, catalogue, description.mechanism));
     }
+  }
+  for (TableReader& load : file.tables("load")) description.loads.push_back(read_load(load));
+  const std::vector<Dimension> dimensions = active_joint_dimensions(description.mechanism);
+  for (TableReader& posture : file.tables("posture")) {
+    description.postures.push_back(read_posture(posture, dimensions));
   }
   file.finish();
   return description;

@@ -109,6 +109,14 @@ std::vector<std::string> active_joint_names(const MechanismDescription& mechanis
   return names;
 }
 
+std::vector<Dimension> active_joint_dimensions(const MechanismDescription& mechanism) {
+  std::vector<Dimension> dimensions;
+  for (const NamedJoint& joint : joints_of(mechanism)) {
+    if (joint.active) dimensions.push_back(joint.slides ? Dimension::length : Dimension::angle);
+  }
+  return dimensions;
+}
+
 std::vector<Interval> active_joint_ranges(const MechanismDescription& mechanism) {
   std::vector<Interval> ranges;
   for (const NamedJoint& joint : joints_of(mechanism)) {
@@ -144,12 +152,38 @@ std::string to_string(ArmCylinderLayout layout) {
   return {};
 }
 
+const std::vector<std::pair<std::string, MomentFrame>>& moment_frame_names() {
+  static const std::vector<std::pair<std::string, MomentFrame>> names = {
+      {"base", MomentFrame::base}, {"tool", MomentFrame::tool}, {"published", MomentFrame::published}};
+  return names;
+}
+
+const std::vector<std::pair<std::string, LoadKind>>& load_kind_names() {
+  static const std::vector<std::pair<std::string, LoadKind>> names = {{"continuous", LoadKind::continuous},
+                                                                      {"peak", LoadKind::peak}};
+  return names;
+}
+
+std::string to_string(MomentFrame frame) {
+  return moment_frame_names()[static_cast<std::size_t>(frame)].first;
+}
+
+std::string to_string(LoadKind kind) {
+  return load_kind_names()[static_cast<std::size_t>(kind)].first;
+}
+
 std::vector<std::string> link_names(const MechanismDescription& mechanism) {
   std::vector<std::string> names{"platform"};
   if (std::holds_alternative<DeltaDescription>(mechanism)) names.insert(names.end(), {"upper_arm", "forearm"});
   if (std::holds_alternative<RCubeDescription>(mechanism)) {
     names.insert(names.end(), {"drive_link", "inner_link", "outer_link"});
   }
+  for (const NamedJoint& joint : joints_of(mechanism)) names.push_back(joint.leg + "/" + joint.joint);
+  return names;
+}
+
+std::vector<std::string> joint_link_names(const MechanismDescription& mechanism) {
+  std::vector<std::string> names;
   for (const NamedJoint& joint : joints_of(mechanism)) names.push_back(joint.leg + "/" + joint.joint);
   return names;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "zwidth/description/description.h"
+#include "zwidth/description/units.h"
 
 /// The names that a mechanism gives to its joints and links, for drives and bodies to refer to.
 ///
@@ -20,6 +21,9 @@ std::string family_name(const MechanismDescription& mechanism);
 /// mechanism has that name, else "LEG/JOINT".
 std::vector<std::string> active_joint_names(const MechanismDescription& mechanism);
 
+/// What the active joints are measured in, in the order of their names: Dimension::angle or length.
+std::vector<Dimension> active_joint_dimensions(const MechanismDescription& mechanism);
+
 /// Ranges of the active joints, in the order of their names [rad] or [m].
 std::vector<Interval> active_joint_ranges(const MechanismDescription& mechanism);
 
@@ -30,8 +34,17 @@ const std::vector<std::pair<std::string, PlatformFreedom>>& platform_freedom_nam
 const std::vector<std::pair<std::string, ArmCylinderLayout>>& arm_cylinder_layout_names();
 std::string to_string(ArmCylinderLayout layout);
 
+/// "base", "tool", "published"; "continuous", "peak": as files call them.
+const std::vector<std::pair<std::string, MomentFrame>>& moment_frame_names();
+const std::vector<std::pair<std::string, LoadKind>>& load_kind_names();
+std::string to_string(MomentFrame frame);
+std::string to_string(LoadKind kind);
+
 /// Every name that `BodyDescription::on` may have.
 std::vector<std::string> link_names(const MechanismDescription& mechanism);
+
+/// Every name that `BodyDescription::turns_with` may have: single links that joints move.
+std::vector<std::string> joint_link_names(const MechanismDescription& mechanism);
 
 /// Index in `active_joint_names` of the joint called "JOINT" (if unique) or "LEG/JOINT"; -1 if there is none.
 int active_joint_index(const MechanismDescription& mechanism, const std::string& name);

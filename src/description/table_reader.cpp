@@ -87,6 +87,26 @@ std::optional<double> TableReader::quantity(std::string_view key, Dimension dime
   return number(*node, path(key), dimension);
 }
 
+std::optional<std::vector<double>> TableReader::quantities(std::string_view key,
+                                                           const std::vector<Dimension>& dimensions, Need need,
+                                                           std::string_view advice) {
+  const toml::node* node = look(key, need, advice);
+  if (node == nullptr) return std::nullopt;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->size() != dimensions.size()) {
+    const std::string found = array == nullptr ? std::string(kind(*node)) : fmt::format("{}", array->size());
+    report(key, fmt::format("must be an array of {}, not {}", dimensions.size(), found), std::string(advice));
+    return std::nullopt;
+  }
+  std::vector<double> values;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    if (const auto value = number(*array->get(i), join_path(path(key), i), dimensions[i]))
+      values.push_back(*value);
+  }
+  if (values.size() != dimensions.size()) return std::nullopt;
+  return values;
+}
+
 std::optional<Vector3> TableReader::vector(std::string_view key, Dimension dimension, Need need,
                                            std::string_view advice) {
   const toml::node* node = look(key, need, advice);

@@ -31,6 +31,16 @@ class Validator {
     for (std::size_t i = 0; i < d_.pneumatic_drives.size(); ++i) {
       check(d_.pneumatic_drives[i], join_path("pneumatic_drive", i));
     }
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < d_.loads.size(); ++i) {
+      name(d_.loads[i].name, names, join_path("load", i) + ".name", "load");
+      check(d_.loads[i], join_path("load", i));
+    }
+    names.clear();
+    for (std::size_t i = 0; i < d_.postures.size(); ++i) {
+      name(d_.postures[i].name, names, join_path("posture", i) + ".name", "posture");
+      check(d_.postures[i], join_path("posture", i));
+    }
     return std::move(problems_);
   }
 
@@ -40,6 +50,21 @@ class Validator {
       const std::string& on = d_.bodies[i].on;
       if (std::find(links.begin(), links.end(), on) == links.end()) {
         wrong(join_path("body", i) + ".on", quoted(on), "is no link of this mechanism", suggest(on, links));
+      }
+    }
+    const std::vector<std::string> single = joint_link_names(d_.mechanism);
+    const auto is_single = [&](const std::string& link) {
+      return std::find(single.begin(), single.end(), link) != single.end();
+    };
+    for (std::size_t i = 0; i < d_.bodies.size(); ++i) {
+      const BodyDescription& body = d_.bodies[i];
+      if (body.turns_with.empty()) continue;
+      if (!is_single(body.turns_with)) {
+        wrong(join_path("body", i) + ".turns_with", quoted(body.turns_with),
+              "is no link that a joint of this mechanism moves", suggest(body.turns_with, single));
+      } else if (!is_single(body.on) && std::find(links.begin(), links.end(), body.on) != links.end()) {
+        wrong(join_path("body", i) + ".on", quoted(body.on), "cannot carry a body that another link turns",
+              "name the one link that a joint moves; " + suggest("", single));
       }
     }
     active_ = active_joint_names(d_.mechanism);
@@ -386,6 +411,7 @@ class Validator {
     check_number(body.mass, Dimension::mass, {.min = 0.0, .max = 1000.0}, path + ".mass",
                  "give the mass, such as \"80 g\"", problems_);
     finite(body.centre, path + ".centre");
+    finite(body.pivot, path + ".pivot");
     const std::string key = path + ".inertia";
     if (!finite(body.inertia, key)) return;
     const Matrix3& I = body.inertia;
@@ -407,6 +433,48 @@ class Validator {
                 "belongs to no body: the principal moment {:.4g} exceeds the sum of the others, {:.4g} kg m^2",
                 principal[2], principal[0] + principal[1]),
             "give the moments about the centre of mass");
+    }
+  }
+
+  // Whether the tool turns, so that a moment on it moves joints.
+  bool tool_turns() const {
+    struct Turns {
+      bool operator()(const SerialDescription& arm) const { return turns(arm.platform); }
+      bool operator()(const LegsDescription& legs) const { return turns(legs.platform); }
+      bool operator()(const auto&) const { return false; }
+      static bool turns(PlatformFreedom platform) {
+        return platform == PlatformFreedom::rigid || platform == PlatformFreedom::planar ||
+               platform == PlatformFreedom::rotation;
+      }
+    };
+    return std::visit(Turns{}, d_.mechanism);
+  }
+
+  void check(const LoadDescription& load, const std::string& path) {
+    if (!finite(load.force, path + ".force") || !finite(load.moment, path + ".moment")) return;
+    if (load.force.isZero(0.0) && load.moment.isZero(0.0)) {
+      wrong(path, "", "is no load: force and moment are zero", "give force = [\"10 N\", 0, 0], say");
+    }
+    if (!load.moment.isZero(0.0) && !tool_turns()) {
+      wrong(path + ".moment", "", "has the wrong dimension: the tool of this mechanism does not turn",
+            "leave it out");
+    }
+  }
+
+  void check(const PostureDescription& posture, const std::string& path) {
+    const std::vector<std::string> names = active_joint_names(d_.mechanism);
+    const std::vector<Interval> ranges = active_joint_ranges(d_.mechanism);
+    const std::vector<Dimension> dimensions = active_joint_dimensions(d_.mechanism);
+    if (posture.joints.size() != names.size()) {
+      wrong(path + ".joints", fmt::format("{} joints", posture.joints.size()),
+            fmt::format("must be {}, one for each active joint", names.size()), "");
+      return;
+    }
+    constexpr double kRounding = 1e-9;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const Bounds bounds{.min = ranges[i].min - kRounding, .max = ranges[i].max + kRounding};
+      check_number(posture.joints[i], dimensions[i], bounds, join_path(path + ".joints", i),
+                   "stay within the range of " + names[i], problems_);
     }
   }
 

@@ -1,6 +1,7 @@
 #include "zwidth/description/values.h"
 
 #include "zwidth/description/internal/schema.h"
+#include "zwidth/description/names.h"
 
 namespace zwidth {
 
@@ -80,6 +81,11 @@ std::vector<DescribedValue> described_values(const Description& description) {
     const std::string table = join_path("body", i);
     const Matrix3& I = body.inertia;
     collector.add(table, "mass", {body.mass}, Dimension::mass, "mass of " + body.on, body.source, body.sources);
+    if (!body.turns_with.empty()) {
+      collector.add(table, "pivot", {body.pivot.x(), body.pivot.y(), body.pivot.z()}, Dimension::length,
+                    "point where the body hangs on " + body.on + " that " + body.turns_with + " turns",
+                    body.source, body.sources);
+    }
     collector.add(table, "centre", {body.centre.x(), body.centre.y(), body.centre.z()}, Dimension::length,
                   "centre of mass of " + body.on, body.source, body.sources);
     collector.add(table, "inertia", {I(0, 0), I(1, 1), I(2, 2)}, Dimension::inertia,
@@ -106,6 +112,16 @@ std::vector<DescribedValue> described_values(const Description& description) {
     if (const auto* arm = std::get_if<ArmCylinderDescription>(&drive.mount)) {
       collector.add_fields(join_path(table, "mount"), *arm, drive.source);
     }
+  }
+  for (std::size_t i = 0; i < description.loads.size(); ++i) {
+    const LoadDescription& load = description.loads[i];
+    const std::string table = join_path("load", i);
+    collector.add(table, "force", {load.force.x(), load.force.y(), load.force.z()}, Dimension::force,
+                  "force of the " + to_string(load.kind) + " load \"" + load.name + "\"", load.source,
+                  load.sources);
+    collector.add(table, "moment", {load.moment.x(), load.moment.y(), load.moment.z()}, Dimension::torque,
+                  "moment of the " + to_string(load.kind) + " load \"" + load.name + "\"", load.source,
+                  load.sources);
   }
   return collector.take();
 }

@@ -24,7 +24,7 @@ struct DescribedValue {
 };
 
 /// Every quantity of mechanism (a delta's; the joints of a spelled-out mechanism are geometry, not parameters),
-/// bodies and drives, in the order of the file. Values of parts are left out: `part_values` lists those.
+/// bodies, drives and loads, in the order of the file. Values of parts are left out: `part_values` lists those.
 std::vector<DescribedValue> described_values(const Description& description);
 
 }  // namespace zwidth

@@ -174,6 +174,9 @@ class Writer {
     for (const BodyDescription& body : description.bodies) write(body);
     for (const DriveDescription& drive : description.drives) write(drive);
     for (const PneumaticDriveDescription& drive : description.pneumatic_drives) write(drive);
+    for (const LoadDescription& load : description.loads) write(load);
+    const std::vector<Dimension> dimensions = active_joint_dimensions(description.mechanism);
+    for (const PostureDescription& posture : description.postures) write(posture, dimensions);
   }
 
  private:
@@ -253,12 +256,35 @@ class Writer {
   }
 
   void write(const BodyDescription& body) {
-    Lines lines{{"on", text(body.on)},
-                {"mass", quantity(body.mass, Dimension::mass)},
-                {"centre", array(body.centre, Dimension::length)},
-                {"inertia", symmetric(body.inertia)}};
+    Lines lines{{"on", text(body.on)}};
+    if (!body.turns_with.empty()) {
+      lines.push_back({"turns_with", text(body.turns_with)});
+      lines.push_back({"pivot", array(body.pivot, Dimension::length)});
+    }
+    lines.push_back({"mass", quantity(body.mass, Dimension::mass)});
+    lines.push_back({"centre", array(body.centre, Dimension::length)});
+    lines.push_back({"inertia", symmetric(body.inertia)});
     add_source(lines, body.source, body.sources);
     table("[[body]]", lines);
+  }
+
+  void write(const LoadDescription& load) {
+    Lines lines{{"name", text(load.name)},
+                {"force", array(load.force, Dimension::force)},
+                {"moment", array(load.moment, Dimension::torque)},
+                {"moment_frame", text(to_string(load.moment_frame))},
+                {"kind", text(to_string(load.kind))}};
+    add_source(lines, load.source, load.sources);
+    table("[[load]]", lines);
+  }
+
+  void write(const PostureDescription& posture, const std::vector<Dimension>& dimensions) {
+    std::string joints;
+    for (std::size_t i = 0; i < posture.joints.size(); ++i)
+      joints += (joints.empty() ? "" : ", ") + quantity(posture.joints[i], dimensions[i]);
+    Lines lines{{"name", text(posture.name)}, {"joints", '[' + joints + ']'}};
+    add_source(lines, posture.source, posture.sources);
+    table("[[posture]]", lines);
   }
 
   void write(const DriveDescription& drive) {

@@ -55,7 +55,17 @@ Matrix3 world_inertia(const BodyModel& body, const Matrix3& R) {
 }
 
 const Matrix3& body_rotation(const Posture& posture, const BodyModel& body) {
-  return body.joint < 0 ? posture.tool().rotation : posture.link_rotation(body.joint);
+  return body.joint < 0 ? posture.tool().rotation : posture.link_rotation(body.turns_with);
+}
+
+// From the joint's point to the pin that a body hangs on; zero for one fixed to its link.
+Vector3 pin_arm(const Posture& posture, const BodyModel& body) {
+  return body.joint < 0 ? Vector3::Zero() : Vector3(posture.link_rotation(body.joint) * body.pivot);
+}
+
+Vector3 body_centre(const Posture& posture, const BodyModel& body) {
+  const Vector3& point = body.joint < 0 ? posture.tool().position : posture.joint_point(body.joint);
+  return point + pin_arm(posture, body) + body_rotation(posture, body) * body.centre;
 }
 
 // Force on the centre and moment about it that move a body, as the bodies' Newton-Euler equations say.
@@ -87,14 +97,20 @@ FreeForces free_forces(const Posture& posture, const Motions& motions, const Lin
   for (const BodyModel& body : mechanism.bodies()) {
     const Matrix3& R = body_rotation(posture, body);
     const LinkMotion& link = body.joint < 0 ? platform : motions[body.joint];
-    const BodyLoad load = body_load(body, R, link.acceleration, link.omega, link.alpha);
-    const Vector3 about_point = load.moment + (R * body.centre).cross(load.force);
+    const LinkMotion& turn = body.joint < 0 ? platform : motions[body.turns_with];
+    const Vector3 pin = pin_arm(posture, body);
+    const Vector3 acceleration =
+        link.acceleration + link.alpha.cross(pin) + link.omega.cross(link.omega.cross(pin));
+    const BodyLoad load = body_load(body, R, acceleration, turn.omega, turn.alpha);
+    const Vector3 about_pin = load.moment + (R * body.centre).cross(load.force);
     if (body.joint < 0) {
       result.platform.force += load.force;
-      result.platform.moment += about_point;
+      result.platform.moment += about_pin;
     } else {
+      // The pin carries the force; the bars hand the moment to the link that turns the body.
       force[body.joint] += load.force;
-      moment[body.joint] += about_point;
+      moment[body.joint] += pin.cross(load.force);
+      moment[body.turns_with] += about_pin;
     }
   }
   // From the tip inwards: what a joint carries, and the share of it along the joint.
@@ -184,15 +200,16 @@ ActiveMatrix mass_matrix(const Posture& posture, const Rates& rates) {
   J.angular.resize(3, n);
   for (const BodyModel& body : mechanism.bodies()) {
     const Matrix3& R = body_rotation(posture, body);
-    const Vector3 c = R * body.centre;
+    const Vector3 c = R * body.centre, pin = pin_arm(posture, body);
     for (int a = 0; a < n; ++a) {
       if (body.joint < 0) {
         const Vector6 twist = mechanism.six_components(rates.tool.col(a));
         J.linear.col(a) = twist.head<3>();
         J.angular.col(a) = twist.tail<3>();
       } else {
-        J.angular.col(a) = motions[a][body.joint].omega;
-        J.linear.col(a) = motions[a][body.joint].velocity;
+        const LinkMotion& link = motions[a][body.joint];
+        J.angular.col(a) = motions[a][body.turns_with].omega;
+        J.linear.col(a) = link.velocity + link.omega.cross(pin);
       }
       const Vector3 omega = J.angular.col(a);
       J.linear.col(a) += omega.cross(c);
@@ -250,10 +267,22 @@ double potential_energy(const Posture& posture) {
   const Mechanism& mechanism = posture.mechanism();
   double V = 0.0;
   for (const BodyModel& body : mechanism.bodies()) {
-    const Vector3& point = body.joint < 0 ? posture.tool().position : posture.joint_point(body.joint);
-    V -= body.mass * mechanism.gravity().dot(point + body_rotation(posture, body) * body.centre);
+    V -= body.mass * mechanism.gravity().dot(body_centre(posture, body));
   }
   return V;
+}
+
+double moving_mass(const Mechanism& mechanism) noexcept {
+  double mass = 0.0;
+  for (const BodyModel& body : mechanism.bodies()) mass += body.mass;
+  return mass;
+}
+
+Vector3 mass_centre(const Posture& posture) noexcept {
+  Vector3 moment = Vector3::Zero();
+  for (const BodyModel& body : posture.mechanism().bodies()) moment += body.mass * body_centre(posture, body);
+  const double mass = moving_mass(posture.mechanism());
+  return mass > 0.0 ? Vector3(moment / mass) : Vector3(Vector3::Zero());
 }
 
 }  // namespace zwidth

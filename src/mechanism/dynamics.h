@@ -32,4 +32,8 @@ ToolMatrix cartesian_mass(const Jacobian& jacobian, const ActiveMatrix& mass);
 double kinetic_energy(const Posture& posture, const ActiveVector& rate);  ///< [J], with drive inertia
 double potential_energy(const Posture& posture);  ///< against gravity, zero at the origin [J]
 
+double moving_mass(const Mechanism& mechanism) noexcept;  ///< of all bodies [kg]
+/// Common centre of mass of all bodies [m], base frame; the origin if nothing has mass.
+Vector3 mass_centre(const Posture& posture) noexcept;
+
 }  // namespace zwidth

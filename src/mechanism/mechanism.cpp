@@ -80,9 +80,14 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
 
   for (const BodyDescription& body : general.bodies) {
     BodyModel model;
-    model.joint = joint_of(body.on, joint_names_);
+    model.joint = model.turns_with = joint_of(body.on, joint_names_);
     model.mass = body.mass;
     model.centre = model.joint < 0 ? body.centre : Vector3(body.centre - points[model.joint]);
+    if (!body.turns_with.empty()) {
+      model.turns_with = joint_of(body.turns_with, joint_names_);
+      model.pivot = body.pivot - points[model.joint];
+      model.centre = body.centre - body.pivot;
+    }
     model.inertia = body.inertia;
     if (model.joint < 0 && platform_ == PlatformFreedom::point) {
       // The platform is the first leg's last link: its turning counts, though the tool's rows leave it out.

@@ -27,12 +27,17 @@ struct JointModel {
   bool free = false;    ///< active, but moved by the hand alone
 };
 
-/// A rigid body fixed to the link that one joint moves.
+/// A rigid body fixed to the link that one joint moves, or hung on it by a pin and turned by another link.
 struct BodyModel {
-  int joint = -1;                     ///< index in `Mechanism::joints()`, -1 for the platform
-  double mass = 0.0;                  ///< [kg]
-  Vector3 centre = Vector3::Zero();   ///< from the joint's point (or the platform's origin), link frame [m]
-  Matrix3 inertia = Matrix3::Zero();  ///< about the centre, link frame [kg m^2]
+  int joint = -1;       ///< that carries it: index in `Mechanism::joints()`, -1 for the platform
+  int turns_with = -1;  ///< whose link's orientation it has: `joint`, unless it hangs on a pin
+  double mass = 0.0;    ///< [kg]
+  Vector3 pivot =
+      Vector3::Zero();  ///< the pin, from the joint's point, carrying link's frame; 0 without one [m]
+  /// From the pin (without one the joint's point, or the platform's origin), in the frame of the link that
+  /// turns it [m].
+  Vector3 centre = Vector3::Zero();
+  Matrix3 inertia = Matrix3::Zero();  ///< about the centre, frame of the link that turns it [kg m^2]
 };
 
 struct LegModel {

@@ -1,6 +1,7 @@
 #include "zwidth/mechanism/dynamics.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstring>
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <string>
 
 #include "support/deltas.h"
+#include "support/positioning_stage.h"
 
 namespace zwidth {
 namespace {
@@ -152,6 +154,84 @@ TEST(Dynamics, FreeSwingKeepsItsEnergy) {
     const double at_start = energy();
     for (int k = 0; k < 200; ++k) state = step(mechanism, state, 5e-4);
     EXPECT_NEAR(energy(), at_start, 1e-8 * std::abs(at_start));  // fourth order: (5e-4 s x 30 rad/s)^4
+  }
+}
+
+// An arm with a body that hangs on one link and is turned by another, as the bars of a parallelogram are,
+// before and behind each other along the chain.
+Description arm_with_hung_bodies(std::mt19937_64& random) {
+  Description description = test::arm_description(0.22, 0.27);
+  const auto anywhere = [&] {
+    return Vector3(test::uniform(random, -0.2, 0.2), test::uniform(random, -0.2, 0.2), 0.3);
+  };
+  for (const auto& [on, turns_with] :
+       {std::pair("arm/theta3", "arm/theta4"), std::pair("arm/theta2", "arm/theta6"),
+        std::pair("arm/theta5", "arm/theta3"), std::pair("arm/theta4", "")}) {
+    BodyDescription body;
+    body.on = on;
+    body.turns_with = turns_with;
+    if (!body.turns_with.empty()) body.pivot = anywhere();
+    body.mass = test::uniform(random, 0.1, 0.6);
+    body.centre = anywhere();
+    const Matrix3 R = Eigen::Quaterniond::UnitRandom().toRotationMatrix();
+    body.inertia = R * Vector3(2e-3, 3e-3, 4e-3).asDiagonal() * R.transpose();
+    description.bodies.push_back(body);
+  }
+  return description;
+}
+
+TEST(Dynamics, OfHungBodiesIsThatOfTheirEnergies) {
+  // Lagrange's equations by differences: d/dt dT/dqdot - dT/dq + dV/dq = tau.
+  std::mt19937_64 random(51);
+  for (int round = 0; round < 10; ++round) {
+    const Mechanism mechanism(arm_with_hung_bodies(random));
+    ActiveVector q(7), rate(7), acceleration(7);
+    for (int j = 0; j < 7; ++j) {
+      q[j] = test::uniform(random, -2, 2);
+      rate[j] = test::uniform(random, -2, 2);
+      acceleration[j] = test::uniform(random, -5, 5);
+    }
+    const auto at = [&](const ActiveVector& joints) { return *solve_forward(mechanism, joints).posture; };
+    const double h = 1e-5;
+    ActiveVector expected(7);
+    const auto momentum = [&](double t) {
+      return ActiveVector(mass_matrix(at(q + t * rate)) * (rate + t * acceleration));
+    };
+    expected = (momentum(h) - momentum(-h)) / (2.0 * h);
+    for (int j = 0; j < 7; ++j) {
+      const ActiveVector step = h * ActiveVector::Unit(7, j);
+      const Posture more = at(q + step), less = at(q - step);
+      expected[j] -= (kinetic_energy(more, rate) - kinetic_energy(less, rate)) / (2.0 * h);
+      expected[j] += (potential_energy(more) - potential_energy(less)) / (2.0 * h);
+    }
+    EXPECT_LT((inverse_dynamics(at(q), rate, acceleration) - expected).norm(), 1e-7 * (1.0 + expected.norm()));
+  }
+}
+
+TEST(Dynamics, KineticEnergyOfAHungBodyIsThatOfItsMotion) {
+  std::mt19937_64 random(52);
+  for (std::size_t which = 0; which < 4; ++which) {
+    Description description = arm_with_hung_bodies(random);
+    description.bodies = {description.bodies[which]};
+    const BodyDescription& body = description.bodies[0];
+    const Mechanism mechanism(description);
+    ActiveVector q(7), rate(7);
+    for (int j = 0; j < 7; ++j) {
+      q[j] = test::uniform(random, -2, 2);
+      rate[j] = test::uniform(random, -2, 2);
+    }
+    const double h = 1e-6;
+    const Posture more = *solve_forward(mechanism, q + h * rate).posture,
+                  less = *solve_forward(mechanism, q - h * rate).posture,
+                  now = *solve_forward(mechanism, q).posture;
+    const Vector3 velocity = (mass_centre(more) - mass_centre(less)) / (2.0 * h);
+    const int turning = mechanism.bodies()[0].turns_with;
+    const Matrix3 spin = (more.link_rotation(turning) - less.link_rotation(turning)) / (2.0 * h) *
+                         now.link_rotation(turning).transpose();
+    const Vector3 omega(spin(2, 1), spin(0, 2), spin(1, 0));
+    const Vector3 local = now.link_rotation(turning).transpose() * omega;
+    const double expected = 0.5 * body.mass * velocity.squaredNorm() + 0.5 * local.dot(body.inertia * local);
+    EXPECT_NEAR(kinetic_energy(now, rate), expected, 1e-8 * (1.0 + expected));
   }
 }
 

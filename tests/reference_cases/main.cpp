@@ -28,7 +28,7 @@ double number_of(const json& value) {
 }
 
 void flatten(const json& value, Values& out) {
-  if (value.is_array()) {
+  if (value.is_structured()) {  // nlohmann's objects are sorted by key
     for (const json& element : value) flatten(element, out);
   } else {
     out.push_back(number_of(value));
@@ -211,6 +211,7 @@ int run(const std::vector<std::string>& files) {
   add_five_bar(quantities);
   add_actuation(quantities);
   add_r_cube(quantities);
+  add_seven_dof(quantities);
   Tally tally;
   for (const std::string& file : files) {
     std::ifstream stream(file);

@@ -41,7 +41,8 @@ class Inputs {
   const nlohmann::json& values_;
 };
 
-/// An answer in numbers: one, or an array row by row. Yes is 1 and no is 0.
+/// An answer in numbers: one, an array row by row, or the values of an object in the order of its keys'
+/// letters. Yes is 1 and no is 0.
 using Values = std::vector<double>;
 /// Rows of angles [rad] in any order, each angle modulo a turn.
 struct AngleRows {
@@ -57,5 +58,6 @@ void add_arm(Quantities& quantities);
 void add_five_bar(Quantities& quantities);
 void add_actuation(Quantities& quantities);
 void add_r_cube(Quantities& quantities);
+void add_seven_dof(Quantities& quantities);
 
 }  // namespace zwidth::reference

@@ -40,6 +40,9 @@ class TableReader {
   std::optional<bool> flag(std::string_view key, Need need);
   std::optional<double> quantity(std::string_view key, Dimension dimension, Need need,
                                  std::string_view advice = {});
+  /// An array whose entries have dimensions of their own, one each.
+  std::optional<std::vector<double>> quantities(std::string_view key, const std::vector<Dimension>& dimensions,
+                                                Need need, std::string_view advice = {});
   std::optional<Vector3> vector(std::string_view key, Dimension dimension, Need need,
                                 std::string_view advice = {});
   std::optional<Interval> interval(std::string_view key, Dimension dimension, Need need,

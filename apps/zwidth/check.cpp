@@ -72,15 +72,14 @@ std::vector<std::string> warnings_of(const Model& model, const MobilitySample& s
   }
   for (int i = 0; i < model.mechanism.active_count(); ++i) {
     const std::string& name = model.mechanism.active_names()[static_cast<size_t>(i)];
-    if (!model.drives[static_cast<size_t>(i)])
+    if (!model.has_drive(i))
       warnings.push_back(fmt::format("{} has no drive: forces and resolution are not known", name));
   }
   if (model.description.bodies.empty())
     warnings.push_back("no body has mass: gravity and inertia are those of the drives alone");
   std::vector<std::string> said;
-  for (const auto& drive : model.drives) {
-    if (!drive) continue;
-    for (const Margin& margin : drive->margins()) {
+  const auto say_failed = [&](const std::vector<Margin>& margins) {
+    for (const Margin& margin : margins) {
       const std::string text =
           fmt::format("{}: {} of {}; {}", margin.name, readable(margin.demand, margin.unit),
                       readable(margin.capability, margin.unit), margin.rule);
@@ -88,6 +87,12 @@ std::vector<std::string> warnings_of(const Model& model, const MobilitySample& s
       said.push_back(text);
       warnings.push_back(text);
     }
+  };
+  for (const auto& drive : model.drives) {
+    if (drive) say_failed(drive->margins());
+  }
+  for (const auto& drive : model.pneumatic_drives) {
+    if (drive) say_failed(drive->margins());
   }
   return warnings;
 }
@@ -113,7 +118,7 @@ int check(const CheckArguments& arguments, const Terminal& terminal) {
       entry["joints"] = mechanism.joint_count();
       entry["active_joints"] = mechanism.active_count();
       entry["bodies"] = model.description.bodies.size();
-      entry["drives"] = model.description.drives.size();
+      entry["drives"] = model.description.drives.size() + model.description.pneumatic_drives.size();
       Json freedom;
       freedom["gruebler"] = sample.least.gruebler;
       freedom["freedoms"] = sample.least.freedoms;
@@ -137,7 +142,8 @@ int check(const CheckArguments& arguments, const Terminal& terminal) {
                         ? fmt::format(", {} closure equations repeat others", sample.least.redundant_equations)
                         : ""));
       sheet.row("bodies", fmt::format("{}", model.description.bodies.size()));
-      sheet.row("drives", fmt::format("{}", model.description.drives.size()));
+      sheet.row("drives",
+                fmt::format("{}", model.description.drives.size() + model.description.pneumatic_drives.size()));
       for (const std::string& warning : warnings)
         sheet.paragraph(tinted(terminal, Tint::warning, "warning: ") + warning);
       sheet.gap();

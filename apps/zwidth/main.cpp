@@ -65,6 +65,7 @@ int run(int argc, char** argv) {
   add_at(app, context);
   add_workspace(app, context);
   add_size(app, context);
+  add_synthesise(app, context);
   add_reproduce(app, context);
   add_show(app, context);
   add_check(app, context);

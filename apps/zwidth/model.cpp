@@ -8,12 +8,21 @@
 #include "terminal.h"
 
 #include "zwidth/analysis/data_sheet.h"
+#include "zwidth/analysis/joint_torque.h"
 #include "zwidth/mechanism/jacobian.h"
 
 namespace zwidth {
 
 Model::Model(const Description& of)
-    : description(of), mechanism(mechanism_with_drives(of)), drives(joint_drives(of, mechanism)) {}
+    : description(of),
+      mechanism(mechanism_with_drives(of)),
+      drives(joint_drives(of, mechanism)),
+      pneumatic_drives(joint_pneumatic_drives(of, mechanism)) {}
+
+bool Model::has_drive(int i) const {
+  const auto j = static_cast<size_t>(i);
+  return drives[j] || pneumatic_drives[j] || mechanism.is_free(i);
+}
 
 bool Model::driven() const {
   return std::all_of(drives.begin(), drives.end(), [](const auto& drive) { return drive.has_value(); });

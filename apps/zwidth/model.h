@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "zwidth/actuation/drive.h"
+#include "zwidth/actuation/pneumatic_drive.h"
 #include "zwidth/description/description.h"
 #include "zwidth/mechanism/mechanism.h"
 #include "zwidth/mechanism/posture.h"
@@ -19,7 +20,11 @@ struct Model {
   Mechanism mechanism;
   std::vector<std::optional<Drive>> drives;  ///< of each active joint; empty where the file gives none
 
-  /// Every active joint has a drive.
+  std::vector<std::optional<PneumaticDrive>> pneumatic_drives;  ///< the same, of cylinders
+
+  /// Whether active joint `i` has a drive of either kind, or needs none because the hand moves it.
+  bool has_drive(int i) const;
+  /// Every active joint has an electric drive.
   bool driven() const;
 
   // One value per active joint; NaN for a joint without a drive.

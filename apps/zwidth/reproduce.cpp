@@ -21,8 +21,14 @@ const std::vector<Source>& sources() {
   static const std::vector<Source> all = {{"delta", reproduce_delta},
                                           {"five-bar", reproduce_five_bar},
                                           {"r-cube", reproduce_r_cube},
-                                          {"seven-dof", reproduce_seven_dof}};
+                                          {"seven-dof", reproduce_seven_dof},
+                                          {"pneumatic", reproduce_pneumatic}};
   return all;
+}
+
+/// Devices with a common source are named after it: "pneumatic-1" after "pneumatic".
+bool covers(const Source& source, const std::string& name) {
+  return name == source.device || name.starts_with(source.device + "-");
 }
 
 struct Arguments {
@@ -145,7 +151,7 @@ int reproduce(const Arguments& arguments, const Terminal& terminal) {
   int bad = 0;
   bool found = false;
   for (const Source& source : sources()) {
-    if (!arguments.device.empty() && arguments.device != source.device) continue;
+    if (!arguments.device.empty() && !covers(source, arguments.device)) continue;
     found = true;
     const Reproduction reproduction = source.reproduce(catalogue());
     bad += missed(reproduction);

@@ -91,5 +91,7 @@ Reproduction reproduce_five_bar(const Catalogue& catalogue);
 Reproduction reproduce_r_cube(const Catalogue& catalogue);
 /// Baser 2006.
 Reproduction reproduce_seven_dof(const Catalogue& catalogue);
+/// Akhoondi Asadi 2017: the three prototypes share one source.
+Reproduction reproduce_pneumatic(const Catalogue& catalogue);
 
 }  // namespace zwidth

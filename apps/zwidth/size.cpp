@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "model.h"
+#include "size_pneumatic.h"
 #include "verbs.h"
 
 #include "zwidth/analysis/sizing.h"
@@ -566,8 +567,25 @@ class Answer {
   std::vector<DriveDemand> demands_;  // of each joint that is not free
 };
 
+std::optional<Vector3> vector_option(const char* option, const std::string& text, Dimension dimension) {
+  if (text.empty()) return std::nullopt;
+  const ParsedQuantities values = parse_quantity_list(text, std::vector<Dimension>(3, dimension));
+  if (!values)
+    throw InputError(fmt::format("{} \"{}\": {}{}", option, text, values.rule,
+                                 values.advice.empty() ? "" : "; " + values.advice));
+  return Vector3(values.values[0], values.values[1], values.values[2]);
+}
+
 int size(const SizeArguments& arguments, const Terminal& terminal) {
-  const Model model(read_device(arguments));
+  const Description description = read_device(arguments);
+  if (!description.pneumatic_drives.empty()) {
+    const PneumaticSizeRequest request{
+        .load = vector_option("--load", arguments.load, Dimension::force),
+        .position = vector_option("--position", arguments.position, Dimension::length),
+        .json = arguments.json};
+    return size_pneumatic(description, request, terminal);
+  }
+  const Model model(description);
   if (!model.driven())
     throw InputError(fmt::format(
         "{}: some joints have no drive, so nothing can be sized; add a [[drive]] to the device file",

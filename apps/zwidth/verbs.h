@@ -11,6 +11,7 @@ void add_at(CLI::App& app, Context& context);
 void add_workspace(CLI::App& app, Context& context);
 void add_size(CLI::App& app, Context& context);
 void add_reproduce(CLI::App& app, Context& context);
+void add_synthesise(CLI::App& app, Context& context);
 void add_show(CLI::App& app, Context& context);
 void add_check(CLI::App& app, Context& context);
 void add_devices(CLI::App& app, Context& context);

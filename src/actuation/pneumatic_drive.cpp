@@ -201,6 +201,8 @@ std::vector<Margin> PneumaticDrive::margins() const {
     if (!arm_->keeps_direction(joint_range_)) least = 0.0;
     add(margins, "stroke", longest - shortest, cylinder.stroke, "m",
         "the joint's range must not need more than the stroke");
+    add(margins, "stroke within the cylinder", cylinder.stroke, mount.retracted_length, "m",
+        "a cylinder with the rod in is longer than its stroke");
     add(margins, "shortest length", mount.retracted_length, shortest, "m",
         "the cylinder must not be shorter than it is with the rod in");
     add(margins, "greatest length", longest, mount.retracted_length + cylinder.stroke, "m",

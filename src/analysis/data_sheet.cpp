@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "zwidth/analysis/internal/probe.h"
+#include "zwidth/analysis/joint_torque.h"
 #include "zwidth/description/names.h"
 #include "zwidth/description/units.h"
 #include "zwidth/description/values.h"
@@ -263,8 +264,14 @@ Mechanism mechanism_with_drives(const Description& description) {
   Mechanism mechanism(description);
   ActiveVector inertia = ActiveVector::Zero(mechanism.active_count());
   const auto drives = joint_drives(description, mechanism);
+  const auto cylinders = joint_pneumatic_drives(description, mechanism);
   for (std::size_t j = 0; j < drives.size(); ++j) {
     if (drives[j]) inertia[static_cast<Eigen::Index>(j)] = drives[j]->reflected_inertia();
+    // Piston and rod where the joint is in the middle of its range.
+    if (cylinders[j]) {
+      const double middle = mechanism.active_range(static_cast<int>(j)).middle();
+      inertia[static_cast<Eigen::Index>(j)] = cylinders[j]->reflected_inertia(middle);
+    }
   }
   mechanism.set_drive_inertia(inertia);
   return mechanism;

@@ -49,6 +49,10 @@ TEST(JsonKeys, AreAllDocumented) {
       {"at delta --position 0,0,1", {}},
       {"workspace delta --grid 5mm --all-figures", {}},
       {"size delta", {}},
+      {"size pneumatic-3 --load 1,0,2", {}},
+      {"synthesise arm-cylinder --cylinder airpel-m9d12.5u --retracted 75mm --range 30deg --load 5N --distance "
+       "68mm",
+       {}},
       {"show delta", {}},
       {"check delta", {}},
       {"devices", {}},

@@ -29,7 +29,9 @@ Probe::Probe(const Mechanism& mechanism) : mechanism_(&mechanism) {
   if (!home) return;
   rotation_ = home.posture->tool().rotation;
   middle_ = home.posture;
-  branch_ = jacobian(*home.posture).topRows<3>().determinant() < 0.0 ? -1.0 : 1.0;
+  branch_ = mechanism.legs().size() == 1                               ? 0.0
+            : jacobian(*home.posture).topRows<3>().determinant() < 0.0 ? -1.0
+                                                                       : 1.0;
 }
 
 Vector3 Probe::middle() const {

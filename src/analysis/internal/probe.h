@@ -44,7 +44,9 @@ class Probe {
 
   const Mechanism* mechanism_;
   Matrix3 rotation_ = Matrix3::Identity();
-  double branch_ = 1.0;            // sign of det J in the middle of the joint ranges
+  // Sign of det J in the middle of the joint ranges; 0 for a mechanism of one leg, which has no loops that a
+  // singularity could reassemble: all its postures are its own.
+  double branch_ = 1.0;
   std::optional<Posture> middle_;  // in the middle of the joint ranges
   std::optional<Posture> last_;    // that was inside
 };

@@ -24,6 +24,13 @@ bool Model::has_drive(int i) const {
   return drives[j] || pneumatic_drives[j] || mechanism.is_free(i);
 }
 
+bool Model::has_drives() const {
+  for (int i = 0; i < mechanism.active_count(); ++i) {
+    if (!has_drive(i)) return false;
+  }
+  return true;
+}
+
 bool Model::driven() const {
   return std::all_of(drives.begin(), drives.end(), [](const auto& drive) { return drive.has_value(); });
 }
@@ -55,7 +62,12 @@ ActiveVector Model::torque_step() const {
   return of_drives(*this, [](const Drive& drive) { return drive.torque_resolution(); });
 }
 ActiveVector Model::joint_step() const {
-  return of_drives(*this, [](const Drive& drive) { return drive.angular_resolution(); });
+  ActiveVector steps = of_drives(*this, [](const Drive& drive) { return drive.angular_resolution(); });
+  for (int i = 0; i < steps.size(); ++i) {
+    const auto& drive = pneumatic_drives[static_cast<size_t>(i)];
+    if (drive && drive->angular_resolution()) steps[i] = *drive->angular_resolution();
+  }
+  return steps;
 }
 
 namespace {

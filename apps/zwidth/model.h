@@ -19,11 +19,12 @@ struct Model {
   Description description;
   Mechanism mechanism;
   std::vector<std::optional<Drive>> drives;  ///< of each active joint; empty where the file gives none
-
   std::vector<std::optional<PneumaticDrive>> pneumatic_drives;  ///< the same, of cylinders
 
   /// Whether active joint `i` has a drive of either kind, or needs none because the hand moves it.
   bool has_drive(int i) const;
+  /// That of all of them.
+  bool has_drives() const;
   /// Every active joint has an electric drive.
   bool driven() const;
 

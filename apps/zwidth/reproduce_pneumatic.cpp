@@ -9,7 +9,7 @@
 #include "zwidth/description/read.h"
 #include "zwidth/description/units.h"
 #include "zwidth/mechanism/families.h"
-#include "zwidth/mechanism/mechanism.h"
+#include "zwidth/mechanism/posture.h"
 
 /// The figures of Akhoondi Asadi 2017. The thesis publishes the lengths of the first prototype only: what it
 /// says of the final device is compared with the lengths chosen in devices/pneumatic-3.toml.
@@ -34,6 +34,20 @@ double parsed(const char* text, Dimension dimension) {
 /// Edge of the largest cube in the workspace of a device [m].
 double cube(const Description& description) {
   return inscribed_shapes(Mechanism(without_free_joints(description))).cube.size;
+}
+
+/// Thickness of the region that the first prototype covers in x and y: from its reach with the second joint at
+/// the far end of its range to that with the arm stretched [m].
+double crescent(const Description& description) {
+  const auto& rows = std::get<SerialDescription>(description.mechanism).joints;
+  const Mechanism mechanism(description);
+  const auto reach = [&](double theta2) {
+    ActiveVector joints = ActiveVector::Zero(3);
+    joints[2] = theta2;
+    const Vector3 p = solve_forward(mechanism, joints).posture->tool().position;
+    return std::hypot(p.x() - rows[0].a, p.y());
+  };
+  return reach(std::atan2(rows[2].a, rows[3].d)) - reach(rows[2].range.min);
 }
 
 /// The final device with the lengths of set B, for the larger cube (docs/devices/pneumatic.md).
@@ -86,8 +100,8 @@ void device_figures(Figures& figures, const Description& set_a, const Descriptio
   figures.under("Abstract and chapter 5: the final device, with chosen lengths");
   figures.add("A.omni", "0.75 lbf of another device", kNewton, 1, 3.3,
               0.75 * parsed("1 lbf", Dimension::force));
-  ReproducedFigure& force = figures.add("A.force", "largest force, upwards at theta = 0", kNewton, 2, 8.75,
-                                        vertical_force(third, reach, 0.7 * kMegapascal));
+  ReproducedFigure& force = figures.add("A.force", "largest vertical force, rear side, theta = 0", kNewton, 2,
+                                        8.75, vertical_force(third, reach, 0.7 * kMegapascal));
   force.tolerance = 0.05;  // 1.96 lbf, printed beside it, is 8.72 N
   read_otherwise(force, "set A, chosen to give it, at 0.7 MPa", "at the regulators' limit",
                  vertical_force(third, reach, third.regulator.max_pressure), "0.5 MPa");
@@ -115,7 +129,7 @@ std::vector<Erratum> not_reproduced(const Catalogue& catalogue) {
                least = peak(*design_least_peak(travel)),
                bound = minimum_peak_force(travel.stroke(), kHalfRange, kLoad, kDistance);
   const double limit = cylinder_force(wide.rear_area, wide.rod_area, 0.7 * kMegapascal, 0.0);
-  const double first_cube = cube(read_description("pneumatic-1", {}, catalogue));
+  const double thick = crescent(read_description("pneumatic-1", {}, catalogue));
   return {
       {"figure 8", "the force stays below the limit, but close to it",
        fmt::format("it peaks at {:.1f} N, {:.0f} % of {:.0f} N", first, 100.0 * first / limit, limit),
@@ -128,8 +142,8 @@ std::vector<Erratum> not_reproduced(const Catalogue& catalogue) {
            "all layouts are one curve with one free number; the work of the load alone asks for {:.1f} N",
            bound)},
       {"figure 21", "largest cube of the first prototype 100 mm",
-       fmt::format("the largest cube with its faces along the axes has {:.0f} mm", 1e3 * first_cube),
-       "with joints of ±60 deg the region in x and y is a crescent at most 78 mm thick; the misprinted X of "
+       fmt::format("no cube above {:.0f} mm fits", 1e3 * thick),
+       "with joints of ±60 deg the region in x and y is a crescent of that thickness; the misprinted X of "
        "(3.68) "
        "would make it wider than the stroke in z"},
       {"figure 31, chapters 4 and 5", "80 mm cube, 8.75 N and M9D12.5U in one device",

@@ -104,6 +104,7 @@ class Page {
     inertia();
     resolution();
     for (size_t i = 0; i < sheet_.drives.size(); ++i) drive(i);
+    for (size_t i = 0; i < sheet_.pneumatic_drives.size(); ++i) cylinder(i);
     parts();
     sources();
     std::string toc;
@@ -482,6 +483,48 @@ class Page {
       how(fmt::format("Force step in the middle of the joint ranges: {}, {}, {} mN along x, y, z.",
                       number(f.x(), 3), number(f.y(), 3), number(f.z(), 3)));
     }
+  }
+
+  void cylinder(size_t i) {
+    const PneumaticDrive& drive = sheet_.pneumatic_drives[i].drive;
+    const PneumaticDriveDescription& description = drive.description();
+    section(fmt::format("cylinder-{}", i), "Cylinder of " + sheet_.pneumatic_drives[i].joint);
+    body_ += fmt::format(
+        "<p>Cylinder <b>{}</b>, two regulators <b>{}</b>, angle sensor <b>{}</b>. Highest pressure {}, set by "
+        "the "
+        "{}.</p>\n",
+        escaped(description.cylinder.info.title), escaped(description.regulator.info.title),
+        escaped(description.potentiometer ? description.potentiometer->info.title : "not given"),
+        readable(drive.usable_pressure(), "Pa"), to_string(drive.limited_by()));
+    how("Computed from the values of the drive and its parts. Torques follow the lever over the joint's range, "
+        "and "
+        "differ with the direction by the area of the rod.");
+    body_ += "<div class=\"card pair\">";
+    for (const DriveFigure& figure : drive.figures()) {
+      std::string name = figure.name;
+      name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+      body_ += fmt::format("<dl><dt>{}</dt><dd>{}</dd></dl>", escaped(name),
+                           escaped(readable(figure.value, figure.unit)));
+    }
+    body_ += "</div>\n";
+    std::string rows =
+        "<tr><th>Margin</th><th class=\"n\">Demand</th><th class=\"n\">Limit</th><th></th><th>Rule</th></tr>";
+    for (const Margin& margin : drive.margins()) {
+      rows += "<tr>" + cell(margin.name, "w") + cell(readable(margin.demand, margin.unit), "n") +
+              cell(readable(margin.capability, margin.unit), "n") +
+              cell(margin.ok ? "✓" : "✗", margin.ok ? "ok" : "no") + cell(margin.rule, "source") + "</tr>\n";
+    }
+    body_ += fmt::format(
+        "<h3>Margins</h3><div class=\"scroll\"><table>{}</table></div>\n<h3>Values of the drive</h3>\n", rows);
+    // Joints with a drive in common have its values in common.
+    const auto& all = description_.pneumatic_drives;
+    const auto place = std::find(all.begin(), all.end(), description) - all.begin();
+    const std::string table = fmt::format("pneumatic_drive[{}]", place);
+    values_table(
+        [&](const DescribedValue& value) {
+          return value.table == table || value.table.starts_with(table + ".");
+        },
+        true);
   }
 
   void drive(size_t i) {

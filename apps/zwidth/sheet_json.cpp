@@ -108,6 +108,28 @@ Json posture_json(const PostureSheet& posture) {
   return entry;
 }
 
+Json cylinder_json(const PneumaticDriveSheet& sheet) {
+  const PneumaticDriveDescription& description = sheet.drive.description();
+  Json entry;
+  entry["joints"] = {sheet.joint};
+  entry["cylinder"] = description.cylinder.info.name;
+  entry["regulator"] = description.regulator.info.name;
+  entry["potentiometer"] =
+      description.potentiometer ? Json(description.potentiometer->info.name) : Json(nullptr);
+  entry["usable_pressure"] = json_number(sheet.drive.usable_pressure());
+  entry["limited_by"] = to_string(sheet.drive.limited_by());
+  entry["torque"] = {{"guaranteed", json_interval(sheet.drive.guaranteed_torque())},
+                     {"greatest", json_interval(sheet.drive.greatest_torque())}};
+  Json figures;
+  for (const DriveFigure& figure : sheet.drive.figures())
+    figures[figure.key] = {{"value", json_number(figure.value)}, {"unit", figure.unit}};
+  entry["figures"] = figures;
+  Json margins = Json::array();
+  for (const Margin& margin : sheet.drive.margins()) margins.push_back(margin_json(margin));
+  entry["margins"] = margins;
+  return entry;
+}
+
 Json drive_json(const DriveSheet& sheet) {
   const DriveDescription& description = sheet.drive.description();
   Json entry;
@@ -259,6 +281,7 @@ Json data_sheet_json(const DataSheet& sheet, const Description& description) {
   }
   Json drives = Json::array();
   for (const DriveSheet& drive : sheet.drives) drives.push_back(drive_json(drive));
+  for (const PneumaticDriveSheet& drive : sheet.pneumatic_drives) drives.push_back(cylinder_json(drive));
   document["drives"] = drives;
   document["warnings"] = sheet.warnings;
   if (!notes.empty()) document["notes"] = notes;

@@ -83,6 +83,7 @@ class SheetText {
     if (sheet_.inertia) inertia(*sheet_.inertia);
     resolution();
     for (const DriveSheet& drive : sheet_.drives) drive_section(drive);
+    for (const PneumaticDriveSheet& drive : sheet_.pneumatic_drives) cylinder_section(drive);
     notes();
     return text_.text();
   }
@@ -282,6 +283,30 @@ class SheetText {
                 fmt::format("{} {} {} mN", number(f.x(), 3), number(f.y(), 3), number(f.z(), 3)),
                 "one current step in every motor");
     }
+  }
+
+  void cylinder_section(const PneumaticDriveSheet& sheet) {
+    const PneumaticDriveDescription& description = sheet.drive.description();
+    text_.heading("Cylinder of " + sheet.joint);
+    text_.row("cylinder", description.cylinder.info.title);
+    text_.row("regulators", description.regulator.info.title);
+    text_.row("angle sensor",
+              description.potentiometer ? description.potentiometer->info.title : std::string("not given"));
+    text_.row("pressure", readable(sheet.drive.usable_pressure(), "Pa"),
+              fmt::format("set by the {}", to_string(sheet.drive.limited_by())));
+    text_.gap();
+    for (const DriveFigure& figure : sheet.drive.figures()) {
+      text_.line(fmt::format("  {}{} {}", figure.name,
+                             std::string(static_cast<size_t>(std::max(1, 48 - columns(figure.name))), ' '),
+                             readable(figure.value, figure.unit)));
+    }
+    text_.gap();
+    std::vector<std::vector<std::string>> rows;
+    for (const Margin& margin : sheet.drive.margins()) {
+      rows.push_back({margin.name, readable(margin.demand, margin.unit),
+                      readable(margin.capability, margin.unit), margin.ok ? "✓" : "✗"});
+    }
+    text_.table({"", "demand", "limit", ""}, rows);
   }
 
   void drive_section(const DriveSheet& drive) {

@@ -18,6 +18,7 @@
 
 #include "zwidth/analysis/data_sheet.h"
 #include "zwidth/description/units.h"
+#include "zwidth/mechanism/families.h"
 
 namespace zwidth {
 
@@ -161,7 +162,11 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
       !arguments.figure.ends_with(".pdf")) {
     throw InputError(fmt::format("--figure {}: must end in .svg, .png or .pdf", arguments.figure));
   }
-  const Model model(read_device(arguments));
+  // What the hand alone moves does not decide where a tool that is a point can be.
+  const Description described = read_device(arguments);
+  const auto* arm = std::get_if<SerialDescription>(&described.mechanism);
+  const bool point = arm != nullptr && arm->platform == PlatformFreedom::point;
+  const Model model(point ? without_free_joints(described) : described);
   if (const auto obstacle = workspace_obstacle(model.mechanism)) {
     throw InputError(fmt::format("{}: {}", model.description.name, *obstacle));
   }

@@ -220,16 +220,22 @@ TorqueRange torque_range(const std::vector<std::optional<Drive>>& drives, bool p
 }
 
 ArmSheet arm_of(const Mechanism& mechanism, const std::vector<std::optional<Drive>>& drives,
-                const ActiveVector& joint_step, const DataSheetOptions& options) {
+                const std::vector<std::optional<PneumaticDrive>>& cylinders, const ActiveVector& joint_step,
+                const DataSheetOptions& options) {
   bool driven = true, stepped = true;
   for (int j = 0; j < mechanism.active_count(); ++j) {
-    const bool has_drive = drives[static_cast<std::size_t>(j)].has_value();
+    const bool has_drive = drives[static_cast<std::size_t>(j)] || cylinders[static_cast<std::size_t>(j)];
     driven = driven && (has_drive || mechanism.is_free(j));
-    stepped = stepped && has_drive;
+    stepped = stepped && has_drive && joint_step[j] > 0.0;
   }
   const auto source = [&](bool peak) -> TorqueSource {
     if (!driven) return {};
-    return [range = torque_range(drives, peak)](const Posture&) { return range; };
+    if (std::ranges::none_of(cylinders, [](const auto& cylinder) { return cylinder.has_value(); })) {
+      return [range = torque_range(drives, peak)](const Posture&) { return range; };
+    }
+    return [&drives, &cylinders, peak](const Posture& posture) {
+      return torque_range(drives, cylinders, posture.active(), peak);
+    };
   };
   ArmSheetOptions arm{.effort = options.effort};
   if (options.slice_points <= 1) arm.slice_postures = 0;
@@ -237,13 +243,15 @@ ArmSheet arm_of(const Mechanism& mechanism, const std::vector<std::optional<Driv
 }
 
 void add_drive_warnings(DataSheet& sheet) {
-  for (const DriveSheet& drive : sheet.drives) {
-    for (const Margin& margin : drive.margins) {
+  const auto warn = [&sheet](const std::string& joints, const std::vector<Margin>& margins) {
+    for (const Margin& margin : margins) {
       if (margin.ok) continue;
-      sheet.warnings.push_back("Drive of " + joined(drive.joints) + ": " + margin.name +
-                               " breaks its rule: " + margin.rule + ".");
+      sheet.warnings.push_back("Drive of " + joints + ": " + margin.name + " breaks its rule: " + margin.rule +
+                               ".");
     }
-  }
+  };
+  for (const DriveSheet& drive : sheet.drives) warn(joined(drive.joints), drive.margins);
+  for (const PneumaticDriveSheet& drive : sheet.pneumatic_drives) warn(drive.joint, drive.drive.margins());
 }
 
 }  // namespace
@@ -291,6 +299,7 @@ DriveLimits drive_limits(const std::vector<std::optional<Drive>>& drives, bool p
 DataSheet data_sheet(const Description& description, const DataSheetOptions& options) {
   const Mechanism mechanism = mechanism_with_drives(description);
   const std::vector<std::optional<Drive>> drives = joint_drives(description, mechanism);
+  const std::vector<std::optional<PneumaticDrive>> cylinders = joint_pneumatic_drives(description, mechanism);
   const bool driven = std::ranges::all_of(drives, [](const auto& drive) { return drive.has_value(); });
 
   DataSheet sheet;
@@ -317,15 +326,24 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
     sheet.joint_resolution[static_cast<Eigen::Index>(j)] = drives[j]->angular_resolution();
     sheet.torque_resolution[static_cast<Eigen::Index>(j)] = drives[j]->torque_resolution().value_or(0.0);
   }
+  for (std::size_t j = 0; j < cylinders.size(); ++j) {
+    if (!cylinders[j]) continue;
+    sheet.joint_resolution[static_cast<Eigen::Index>(j)] = cylinders[j]->angular_resolution().value_or(0.0);
+    sheet.pneumatic_drives.push_back({sheet.joint_names[j], *cylinders[j]});
+  }
   for (const DriveDescription& drive : description.drives) {
     sheet.drives.push_back(drive_sheet(drive, mechanism, options));
   }
-  if (!driven)
+  bool all_moved = true;
+  for (std::size_t j = 0; j < drives.size(); ++j) {
+    all_moved = all_moved && (drives[j] || cylinders[j] || mechanism.is_free(static_cast<int>(j)));
+  }
+  if (!all_moved)
     sheet.warnings.push_back("Not every active joint has a drive: forces and resolution are left out.");
   add_drive_warnings(sheet);
 
-  if (mechanism.tool_turns()) {
-    sheet.arm = arm_of(mechanism, drives, sheet.joint_resolution, options);
+  if (mechanism.tool_turns() || mechanism.platform() == PlatformFreedom::point) {
+    sheet.arm = arm_of(mechanism, drives, cylinders, sheet.joint_resolution, options);
     sheet.complete = sheet.arm->complete;
     return sheet;
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "zwidth/actuation/drive.h"
+#include "zwidth/actuation/pneumatic_drive.h"
 #include "zwidth/analysis/arm_sheet.h"
 #include "zwidth/analysis/force.h"
 #include "zwidth/analysis/inertia.h"
@@ -90,6 +91,12 @@ struct DriveSheet {
   std::optional<ActuatorResponse> response;      ///< joint angle zero; empty without a capstan or an output
 };
 
+/// One cylinder of the device, and the joint that it moves: margins and figures, ask it.
+struct PneumaticDriveSheet {
+  std::string joint;
+  PneumaticDrive drive;
+};
+
 struct GeometryEntry {
   std::string key;     ///< "base_radius"
   std::string name;    ///< "base radius"
@@ -132,7 +139,8 @@ struct DataSheet {
   ActiveVector joint_resolution;   ///< angle of one count, per active joint [rad]; 0 without a drive
   ActiveVector torque_resolution;  ///< torque of one current step, per active joint [N m]; 0 if not given
 
-  std::vector<DriveSheet> drives;     ///< in the order of the description
+  std::vector<DriveSheet> drives;                     ///< in the order of the description
+  std::vector<PneumaticDriveSheet> pneumatic_drives;  ///< in the order of the joints
   std::vector<std::string> warnings;  ///< sentences for a person: failed margins, what could not be computed
   bool complete = true;               ///< false if it was cancelled
 };

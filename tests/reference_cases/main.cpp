@@ -70,6 +70,10 @@ bool Inputs::flag(const std::string& key) const {
   return required(values_, key).get<bool>();
 }
 
+std::vector<std::string> Inputs::texts(const std::string& key) const {
+  return required(values_, key).get<std::vector<std::string>>();
+}
+
 std::string Inputs::text(const std::string& key) const {
   return required(values_, key).get<std::string>();
 }
@@ -212,6 +216,7 @@ int run(const std::vector<std::string>& files) {
   add_actuation(quantities);
   add_r_cube(quantities);
   add_seven_dof(quantities);
+  add_pneumatic(quantities);
   Tally tally;
   for (const std::string& file : files) {
     std::ifstream stream(file);

@@ -36,6 +36,7 @@ class Inputs {
   std::vector<double> list(const std::string& key) const;
   bool flag(const std::string& key) const;
   std::string text(const std::string& key) const;
+  std::vector<std::string> texts(const std::string& key) const;
 
  private:
   const nlohmann::json& values_;
@@ -59,5 +60,6 @@ void add_five_bar(Quantities& quantities);
 void add_actuation(Quantities& quantities);
 void add_r_cube(Quantities& quantities);
 void add_seven_dof(Quantities& quantities);
+void add_pneumatic(Quantities& quantities);
 
 }  // namespace zwidth::reference

@@ -4,6 +4,7 @@
 #include "section.h"
 
 #include "zwidth/analysis/force.h"
+#include "zwidth/analysis/joint_torque.h"
 #include "zwidth/mechanism/dynamics.h"
 
 /// What the joints must hold, and what the tool can push.
@@ -88,7 +89,35 @@ Json limits_entry(const Situation& at, const char* name, const ActiveVector& tor
 
 }  // namespace
 
+namespace {
+
+/// With cylinders, whose limits follow the posture and differ with the direction.
+void write_pneumatic_limits(const Situation& at, Answer& answer) {
+  const TorqueRange range =
+      torque_range(at.model.drives, at.model.pneumatic_drives, at.posture.active(), false);
+  answer.columns(at.mechanism.active_names());
+  answer.cells("torque limit, positive [mN m]", range.max, kMilli);
+  answer.cells("torque limit, negative [mN m]", range.min, kMilli);
+  Json entry = at.singularity.gains ? Json() : limits_entry(at, "continuous", either_way(range), answer);
+  entry["torque_range"] = {json_array(range.min), json_array(range.max)};
+  Json along = Json::array();
+  const Eigen::Index rows = at.J.rows();
+  for (Eigen::Index r = 0; r < rows && !at.singularity.gains; ++r) {
+    const ToolVector axis = ToolVector::Unit(rows, r);
+    along.push_back(
+        {json_number(-load_limit(at.J, range, -axis).value), json_number(load_limit(at.J, range, axis).value)});
+  }
+  entry["axis_range"] = along;
+  answer.put("force_limits", Json{{"continuous", entry}, {"peak", nullptr}});
+}
+
+}  // namespace
+
 void write_force_limits(const Situation& at, Answer& answer) {
+  if (!at.model.description.pneumatic_drives.empty() && at.model.has_drives()) {
+    write_pneumatic_limits(at, answer);
+    return;
+  }
   if (!at.model.driven()) {
     answer.undefined("force_limits", "some joints have no drive");
     return;

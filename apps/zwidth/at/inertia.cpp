@@ -53,7 +53,35 @@ void write_cartesian_mass(const Situation& at, Answer& answer) {
   answer.cells("apparent mass [g]", apparent_mass(felt).along_axes, kMilli, "free to move sideways");
 }
 
+namespace {
+
+/// With potentiometers, where the voltage step that is read is known. What does not move the tool does not
+/// matter.
+void write_pneumatic_resolution(const Situation& at, Answer& answer) {
+  ActiveVector steps = at.model.joint_step();
+  Json entry;
+  entry["joint"] = json_array(steps);
+  for (Eigen::Index j = 0; j < steps.size(); ++j) {
+    if (at.J.col(j).isZero(0.0)) steps[j] = 0.0;
+  }
+  const ToolVector tool = tool_resolution(at.J, steps);
+  entry["position"] = json_array(tool);
+  if (tool.allFinite()) {
+    answer.tool_vector(at.frame, tool, "position step [µm]", 1e6, "angle step [mrad]", kMilli,
+                       "one step read of every joint");
+  } else {
+    answer.page().row("position step", "not given", "a joint has no sensor, or its step is not given");
+  }
+  answer.put("resolution", entry);
+}
+
+}  // namespace
+
 void write_resolution(const Situation& at, Answer& answer) {
+  if (!at.model.description.pneumatic_drives.empty() && at.model.has_drives()) {
+    write_pneumatic_resolution(at, answer);
+    return;
+  }
   if (!at.model.driven()) {
     answer.undefined("resolution", "some joints have no drive");
     return;

@@ -157,6 +157,7 @@ const std::vector<Section>& sections() {
       {"Forces and torques", {"gravity_torques"}, write_gravity, true},
       {"Forces and torques", {"load", "torques"}, write_torques, true, kLoad},
       {"Forces and torques", {"force_limits"}, write_force_limits},
+      {"Cylinders", {"cylinders"}, write_cylinders, true, "only for pneumatic drives"},
       {"Inertia", {"mass_matrix"}, write_mass_matrix, true},
       {"Inertia", {"mass_matrix_point_mass"}, write_point_mass, true, "only for a delta"},
       {"Inertia", {"cartesian_mass"}, write_cartesian_mass, true},

@@ -144,6 +144,8 @@ void write_motion(const Situation&, Answer&);
 void write_gravity(const Situation&, Answer&);
 void write_torques(const Situation&, Answer&);
 void write_force_limits(const Situation&, Answer&);
+// cylinders.cpp
+void write_cylinders(const Situation&, Answer&);
 // inertia.cpp
 void write_mass_matrix(const Situation&, Answer&);
 void write_point_mass(const Situation&, Answer&);

@@ -579,8 +579,11 @@ std::optional<Vector3> vector_option(const char* option, const std::string& text
 int size(const SizeArguments& arguments, const Terminal& terminal) {
   const Description description = read_device(arguments);
   if (!description.pneumatic_drives.empty()) {
+    if (arguments.loads.size() > 1)
+      throw InputError("--load: pneumatic devices are sized for one load at a time; give one");
+    const std::string load = arguments.loads.empty() ? "" : arguments.loads.front();
     const PneumaticSizeRequest request{
-        .load = vector_option("--load", arguments.load, Dimension::force),
+        .load = vector_option("--load", load, Dimension::force),
         .position = vector_option("--position", arguments.position, Dimension::length),
         .json = arguments.json};
     return size_pneumatic(description, request, terminal);

@@ -54,7 +54,7 @@ PostureResolution posture_resolution(const Posture& posture, const ActiveVector&
   // Every choice of signs but for turning all of them round.
   for (unsigned signs = 0; signs < 1U << (n - 1); ++signs) {
     ToolVector sum = steps.col(n - 1);
-    for (int j = 0; j + 1 < n; ++j) sum += (signs >> j & 1U) != 0 ? steps.col(j) : -steps.col(j);
+    for (int j = 0; j + 1 < n; ++j) sum += ((signs >> j & 1U) != 0 ? 1.0 : -1.0) * steps.col(j);
     const ToolStep one = size_of(sum);
     resolution.together.distance = std::max(resolution.together.distance, one.distance);
     resolution.together.angle = std::max(resolution.together.angle, one.angle);

@@ -94,7 +94,7 @@ std::optional<std::vector<double>> TableReader::quantities(std::string_view key,
   if (node == nullptr) return std::nullopt;
   const toml::array* array = node->as_array();
   if (array == nullptr || array->size() != dimensions.size()) {
-    const std::string found = array == nullptr ? std::string(kind(*node)) : fmt::format("{}", array->size());
+    const std::string found = array == nullptr ? std::string(kind_of(*node)) : fmt::format("{}", array->size());
     report(key, fmt::format("must be an array of {}, not {}", dimensions.size(), found), std::string(advice));
     return std::nullopt;
   }

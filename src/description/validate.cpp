@@ -438,16 +438,13 @@ class Validator {
 
   // Whether the tool turns, so that a moment on it moves joints.
   bool tool_turns() const {
-    struct Turns {
-      bool operator()(const SerialDescription& arm) const { return turns(arm.platform); }
-      bool operator()(const LegsDescription& legs) const { return turns(legs.platform); }
-      bool operator()(const auto&) const { return false; }
-      static bool turns(PlatformFreedom platform) {
-        return platform == PlatformFreedom::rigid || platform == PlatformFreedom::planar ||
-               platform == PlatformFreedom::rotation;
-      }
+    const auto turns = [](PlatformFreedom platform) {
+      return platform == PlatformFreedom::rigid || platform == PlatformFreedom::planar ||
+             platform == PlatformFreedom::rotation;
     };
-    return std::visit(Turns{}, d_.mechanism);
+    if (const auto* arm = std::get_if<SerialDescription>(&d_.mechanism)) return turns(arm->platform);
+    if (const auto* legs = std::get_if<LegsDescription>(&d_.mechanism)) return turns(legs->platform);
+    return false;
   }
 
   void check(const LoadDescription& load, const std::string& path) {
@@ -472,9 +469,10 @@ class Validator {
     }
     constexpr double kRounding = 1e-9;
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const Bounds bounds{.min = ranges[i].min - kRounding, .max = ranges[i].max + kRounding};
-      check_number(posture.joints[i], dimensions[i], bounds, join_path(path + ".joints", i),
-                   "stay within the range of " + names[i], problems_);
+      // A range that an angle in degrees meets exactly may miss it by rounding.
+      if (ranges[i].contains(posture.joints[i], kRounding)) continue;
+      check_number(posture.joints[i], dimensions[i], {.min = ranges[i].min, .max = ranges[i].max},
+                   join_path(path + ".joints", i), "stay within the range of " + names[i], problems_);
     }
   }
 

@@ -92,7 +92,7 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
     if (model.joint < 0 && platform_ == PlatformFreedom::point) {
       // The platform is the first leg's last link: its turning counts, though the tool's rows leave it out.
       const LegModel& leg = legs_.front();
-      model.joint = leg.first + leg.count - 1;
+      model.joint = model.turns_with = leg.first + leg.count - 1;
       model.centre = leg.tip + leg.platform_rotation * body.centre;
       model.inertia = leg.platform_rotation * body.inertia * leg.platform_rotation.transpose();
     }

@@ -42,6 +42,7 @@ std::string example_file() {
   std::string text;
   for (const TableReference& table : file_reference()) {
     if (table.name == "motor") break;
+    if (table.name == "posture") continue;  // as many joints as the mechanism has
     if (kFamilies.contains(table.name) || kPneumatic.contains(table.name)) continue;
     if (table.name == "ratio" || table.name == "gearhead transmission")
       continue;  // a drive has one transmission
@@ -53,8 +54,10 @@ std::string example_file() {
     if (table.name == "preloader" || table.name == "output") header = "[drive." + table.name + "]";
     text += header + "\n";
     for (const KeyReference& key : table.keys) {
-      if (!key.example.empty() && key.key != "transmission" && key.key != "joints")
-        text += key.key + " = " + key.example + "\n";
+      // The tool of this mechanism does not turn, and no body hangs on a pin.
+      static const std::set<std::string> kElsewhere = {"transmission", "joints", "moment", "turns_with",
+                                                       "pivot"};
+      if (!key.example.empty() && !kElsewhere.contains(key.key)) text += key.key + " = " + key.example + "\n";
     }
   }
   return text;

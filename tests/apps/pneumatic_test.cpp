@@ -30,9 +30,34 @@ TEST(Pneumatic, PositionHasFourBranchesAndTorquesForALoad) {
         document["gravity_torques"][j].get<double>() + J[0][j].get<double>() + 2.0 * J[2][j].get<double>();
     EXPECT_NEAR(document["torques"][j].get<double>(), wanted, 1e-12);
   }
+  // Cylinders give these torques, with the pressures and the commands that they say.
+  ASSERT_EQ(document["cylinders"].size(), 3U);
+  for (int j = 0; j < 3; ++j) {
+    const auto& cylinder = document["cylinders"][j];
+    EXPECT_EQ(cylinder["status"], "ok");
+    const double force = cylinder["force"].get<double>();
+    EXPECT_NEAR(force * cylinder["lever"].get<double>(), document["torques"][j].get<double>(), 1e-12);
+    const double A1 = 0.105 * 0.0254 * 0.0254, A2 = 0.093 * 0.0254 * 0.0254;
+    EXPECT_NEAR(cylinder["pressures"][0].get<double>() * A1 - cylinder["pressures"][1].get<double>() * A2,
+                force, 1e-9);
+    for (int side = 0; side < 2; ++side) {
+      EXPECT_NEAR(1e3 + 49.9e3 * cylinder["voltages"][side].get<double>(),
+                  cylinder["pressures"][side].get<double>(), 1e-6);
+    }
+  }
+  const auto& limits = document["force_limits"]["continuous"];
+  EXPECT_GT(-limits["torque_range"][0][1].get<double>(), limits["torque_range"][1][1].get<double>());
+  // Upwards the rod side of the third cylinder works, downwards the other.
+  EXPECT_LT(limits["axis_range"][2][1].get<double>(), -limits["axis_range"][2][0].get<double>());
+  EXPECT_NEAR(document["resolution"]["joint"][0].get<double>(), 1.22e-3 / 5.0 * 330.0 * M_PI / 180.0, 1e-12);
+  EXPECT_GT(document["resolution"]["position"][0].get<double>(), 1e-5);
   // The wrist moves nothing.
   for (int r = 0; r < 3; ++r) EXPECT_NEAR(J[r][4].get<double>(), 0.0, 1e-15);
   EXPECT_EQ(run({"at", "pneumatic-3", "--position", "0.9,0,0", "--json"}).json()["status"], "unreachable");
+  const auto pressed =
+      run({"at", "pneumatic-3", "--joints", "0,0,0,0,0", "--load", "0,0,20", "--json"}).json()["cylinders"][2];
+  EXPECT_EQ(pressed["status"], "saturated");
+  EXPECT_DOUBLE_EQ(pressed["pressures"][1].get<double>(), 500e3);
 }
 
 TEST(Pneumatic, SizeComparesForcesWithTheCylinders) {

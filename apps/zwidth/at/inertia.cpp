@@ -62,7 +62,7 @@ void write_pneumatic_resolution(const Situation& at, Answer& answer) {
   Json entry;
   entry["joint"] = json_array(steps);
   for (Eigen::Index j = 0; j < steps.size(); ++j) {
-    if (at.J.col(j).isZero(0.0)) steps[j] = 0.0;
+    if (at.J.col(j).norm() < 1e-12 * at.mechanism.characteristic_length()) steps[j] = 0.0;
   }
   const ToolVector tool = tool_resolution(at.J, steps);
   entry["position"] = json_array(tool);

@@ -338,8 +338,13 @@ InscribedShapes inscribed_shapes(const Mechanism& mechanism) {
   const double scale = extents.size().maxCoeff();
   InscribedShapes shapes;
   if (!(scale > 0.0)) return shapes;
-  const double h = scale / (mechanism.delta() ? 24.0 : 12.0);
-  const int tries = mechanism.delta() ? 3 : 1;
+  // An arm that positions often covers a shell, thin beside its width: as many points as a cube would have then
+  // lie closer in its flat box.
+  const bool arm = mechanism.platform() == PlatformFreedom::point;
+  const bool quick = mechanism.delta() || arm;
+  const double edge = arm ? std::cbrt(extents.size().prod()) : scale;
+  const double h = edge / (quick ? 24.0 : 12.0);
+  const int tries = quick ? 3 : 1;
   std::vector<Start> centres = starts(probe, extents, h);
   for (const bool cube : {false, true}) {
     const Shape shape = cube ? unit_cube() : unit_sphere();

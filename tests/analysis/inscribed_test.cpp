@@ -4,6 +4,7 @@
 #include <random>
 
 #include "support/deltas.h"
+#include "support/pneumatics.h"
 
 #include "zwidth/analysis/workspace.h"
 #include "zwidth/mechanism/families.h"
@@ -91,6 +92,27 @@ TEST(Inscribed, LegsAgreeWithClosedForm) {
   const InscribedShapes general = inscribed_shapes(Mechanism(spelled_out(description)));
   EXPECT_NEAR(general.sphere.size / closed.sphere.size, 1.0, 1e-5);
   EXPECT_NEAR(general.cube.size / closed.cube.size, 1.0, 1e-5);
+}
+
+// The first pneumatic prototype covers a crescent, thin beside its width: the largest cube lies across it,
+// between the circle of the stretched arm and that of the bent one.
+TEST(Inscribed, ThinWorkspaceOfAnArm) {
+  const test::Prototype1 l;
+  Description device = test::prototype(l, {-std::numbers::pi / 3.0, std::numbers::pi / 3.0});
+  std::get<SerialDescription>(device.mechanism).joints[0].range = {0.0, 0.1};
+  const InscribedShapes shapes = inscribed_shapes(Mechanism(device));
+  const double forearm = std::hypot(l.l3z, l.l3x), lean = std::atan2(l.l3x, l.l3z);
+  const double outer = l.l2x + forearm;
+  const double inner = std::sqrt(l.l2x * l.l2x + forearm * forearm +
+                                 2.0 * l.l2x * forearm * std::cos(std::numbers::pi / 3.0 + lean));
+  // A square across the x axis: its inner side touches the inner circle, its outer corners the outer one,
+  // (inner + a)^2 + (a/2)^2 = outer^2.
+  const double a =
+      (-2.0 * inner + std::sqrt(4.0 * inner * inner + 5.0 * (outer * outer - inner * inner))) / 2.5;
+  // The search stops a little off the axis.
+  EXPECT_GE(shapes.cube.size, 0.98 * a);
+  EXPECT_LE(shapes.cube.size, outer - inner);
+  EXPECT_NEAR(2.0 * shapes.sphere.size, outer - inner, 1e-6);
 }
 
 }  // namespace

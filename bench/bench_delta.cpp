@@ -104,16 +104,13 @@ int main(int argc, char** argv) {
   const zwidth::DeltaGeometry geometry = zwidth::delta_geometry(delta);
   const bench::Textbook textbook(geometry, delta.joint_range);
 
-  // Random postures, and a smooth walk of 1 mm and less per step for warm starts.
+  // Random postures.
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> angle(delta.joint_range.min, delta.joint_range.max);
-  std::vector<Vector3> theta(kPoses), position(kPoses), walk(kPoses);
+  std::vector<Vector3> theta(kPoses), position(kPoses);
   for (int p = 0; p < kPoses; ++p) {
     theta[p] = {angle(random), angle(random), angle(random)};
     position[p] = zwidth::delta_forward(geometry, theta[p]).position;
-    const double t = 2.0 * std::numbers::pi * p / kPoses;
-    walk[p] =
-        Vector3(0.4 + 0.3 * std::sin(t), 0.4 + 0.3 * std::sin(2.0 * t + 1.0), 0.4 + 0.3 * std::sin(3.0 * t));
   }
 
   double worst = 0.0;
@@ -225,43 +222,5 @@ int main(int argc, char** argv) {
     }
   });
   inverse.run();
-
-  zwidth::Description description;
-  description.mechanism = delta;
-  const zwidth::Mechanism mechanism(description), legs(zwidth::spelled_out(description));
-  bench::Suite solver("General solver of legs, warm-started along a smooth walk", options);
-  solver.add("zwidth solve_forward and jacobian, general, from the last posture", kPoses, [&](long n) {
-    for (long it = 0; it < n; ++it) {
-      zwidth::Solution last = zwidth::solve_forward(legs, zwidth::ActiveVector(walk[0]));
-      for (const Vector3& q : walk) {
-        zwidth::Solution next = zwidth::solve_forward(legs, zwidth::ActiveVector(q), {.start = &*last.posture});
-        bench::keep(zwidth::jacobian(*next.posture));
-        last = std::move(next);
-      }
-    }
-  });
-  solver.goal(3e-6);
-  std::vector<Vector3> path;
-  for (const Vector3& q : walk) path.push_back(zwidth::delta_forward(geometry, q).position);
-  solver.add("zwidth solve_inverse and jacobian, general, from the last posture", kPoses, [&](long n) {
-    for (long it = 0; it < n; ++it) {
-      zwidth::Solution last = zwidth::solve_forward(legs, zwidth::ActiveVector(walk[0]));
-      for (const Vector3& p : path) {
-        zwidth::Solution next = zwidth::solve_inverse(legs, {.position = p}, {.start = &*last.posture});
-        bench::keep(zwidth::jacobian(*next.posture));
-        last = std::move(next);
-      }
-    }
-  });
-  solver.goal(3e-6);
-  solver.add("zwidth solve_forward and jacobian, closed form", kPoses, [&](long n) {
-    for (long it = 0; it < n; ++it) {
-      for (const Vector3& q : walk) {
-        const zwidth::Solution solution = zwidth::solve_forward(mechanism, zwidth::ActiveVector(q));
-        bench::keep(zwidth::jacobian(*solution.posture));
-      }
-    }
-  });
-  solver.run();
   return 0;
 }

@@ -3,6 +3,9 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <type_traits>
+
+#include "zwidth/math/lanes.h"
 
 namespace zwidth {
 
@@ -17,52 +20,26 @@ class SmallQr {
  public:
   static constexpr double kRankTolerance = 1e-10;
 
-  /// Starts a rows x columns matrix, whose elements the caller then writes through `at`. REQUIRES: within the
-  /// maxima.
+  /// Starts a rows x columns matrix of zeros, whose elements the caller then writes through `at`. REQUIRES:
+  /// within the maxima.
   void resize(int rows, int columns) noexcept {
     assert(rows >= 0 && rows <= MaxRows && columns >= 0 && columns <= MaxColumns);
     rows_ = rows;
     columns_ = columns;
     rank_ = 0;
+    for (int i = 0; i < rows; ++i) {
+      for (int j = 0; j < columns; j += kLanes) lanes_at(&a_[i][j]) = Lanes{};
+    }
   }
   int rows() const noexcept { return rows_; }
   int columns() const noexcept { return columns_; }
 
   /// Element before `factor`.
-  double& at(int row, int column) noexcept { return a_[column][row]; }
+  double& at(int row, int column) noexcept { return a_[row][column]; }
 
   /// Factors what `at` wrote, in place.
   void factor() noexcept {
-    for (int j = 0; j < columns_; ++j) pivot_[j] = j;
-    const int steps = rows_ < columns_ ? rows_ : columns_;
-    double largest = 0.0;
-    rank_ = 0;
-    for (int k = 0; k < steps; ++k) {
-      int best = k;
-      double best_norm2 = -1.0;
-      for (int j = k; j < columns_; ++j) {
-        const double norm2 = dot(a_[j], a_[j], k);
-        if (norm2 > best_norm2) {
-          best_norm2 = norm2;
-          best = j;
-        }
-      }
-      if (k == 0) largest = best_norm2;
-      if (!(best_norm2 > kRankTolerance * kRankTolerance * largest)) break;
-      if (best != k) {
-        std::swap(a_[k], a_[best]);
-        std::swap(pivot_[k], pivot_[best]);
-      }
-      // Reflect column k onto the axis k: v = x - alpha e_k with alpha of the sign opposite to x_k.
-      std::array<double, MaxRows>& v = a_[k];
-      const double norm = std::sqrt(best_norm2);
-      const double alpha = v[k] > 0.0 ? -norm : norm;
-      v[k] -= alpha;
-      scale_[k] = -1.0 / (alpha * v[k]);  // 2 / (v.v)
-      diagonal_[k] = alpha;
-      for (int j = k + 1; j < columns_; ++j) reflect(k, a_[j]);
-      ++rank_;
-    }
+    with_sizes([this](auto rows, auto width) { factor_sizes(rows, width); });
   }
 
   /// Rank found.
@@ -80,23 +57,24 @@ class SmallQr {
     return rank_ < full || full == 0 ? 0.0 : std::abs(diagonal_[full - 1]);
   }
 
-  /// b <- Q^T b; b has `rows` elements.
+  /// b <- Q^T b; b has `rows` elements, numbers or `Lanes` of numbers.
   template <class Vector>
   void apply_q_transposed(Vector& b) const noexcept {
-    for (int k = 0; k < rank_; ++k) reflect(k, b);
+    with_rows([&](auto rows) {
+      for (int k = 0; k < rank_; ++k) reflect(rows, k, b);
+    });
   }
 
   /// Given y = Q^T b, the x with `columns` elements that minimises |A x - b|; columns left out of the rank get
-  /// 0.
+  /// 0. Numbers or `Lanes` of numbers.
   template <class Y, class X>
   void back_substitute(const Y& y, X& x) const noexcept {
-    for (int j = rank_; j < columns_; ++j) x[pivot_[j]] = 0.0;
-    std::array<double, MaxColumns> z;
+    using Element = std::remove_cvref_t<decltype(x[0])>;
+    for (int j = rank_; j < columns_; ++j) x[pivot_[j]] = Element{};
     for (int i = rank_ - 1; i >= 0; --i) {
-      double sum = y[i];
-      for (int j = i + 1; j < rank_; ++j) sum -= a_[j][i] * z[j];
-      z[i] = sum / diagonal_[i];
-      x[pivot_[i]] = z[i];
+      Element sum = y[i];
+      for (int j = i + 1; j < rank_; ++j) sum -= r_[i][pivot_[j]] * x[pivot_[j]];
+      x[pivot_[i]] = reciprocal_[i] * sum;
     }
   }
 
@@ -108,33 +86,105 @@ class SmallQr {
     for (int i = 0; i < rows_; ++i) x[i] = 0.0;
     for (int i = 0; i < rank_; ++i) {
       double sum = b[pivot_[i]];
-      for (int j = 0; j < i; ++j) sum -= a_[i][j] * x[j];
-      x[i] = sum / diagonal_[i];
+      for (int j = 0; j < i; ++j) sum -= r_[j][pivot_[i]] * x[j];
+      x[i] = sum * reciprocal_[i];
     }
-    for (int k = rank_ - 1; k >= 0; --k) reflect(k, x);
+    with_rows([&](auto rows) {
+      for (int k = rank_ - 1; k >= 0; --k) reflect(rows, k, x);
+    });
   }
 
  private:
-  template <class Left, class Right>
-  double dot(const Left& left, const Right& right, int from) const noexcept {
-    double sum = 0.0;
-    for (int i = from; i < rows_; ++i) sum += left[i] * right[i];
-    return sum;
+  // Calls `work` with the number of rows and of columns in whole lanes: as constants where they are those of
+  // most closures, so that loops unroll.
+  template <class Work>
+  void with_sizes(Work&& work) const noexcept {
+    with_rows([&](auto rows) {
+      if (columns_ <= kLanes) return work(rows, std::integral_constant<int, kLanes>());
+      work(rows, whole_lanes(columns_));
+    });
   }
-  template <class Vector>
-  void reflect(int k, Vector& b) const noexcept {
-    const double factor = scale_[k] * dot(a_[k], b, k);
-    for (int i = k; i < rows_; ++i) b[i] -= factor * a_[k][i];
+  template <class Work>
+  void with_rows(Work&& work) const noexcept {
+    if constexpr (MaxRows >= 3) {
+      if (rows_ == 3) return work(std::integral_constant<int, 3>());
+    }
+    if constexpr (MaxRows >= 6) {
+      if (rows_ == 6) return work(std::integral_constant<int, 6>());
+    }
+    work(rows_);
   }
+
+  template <class Rows, class Width>
+  void factor_sizes(Rows rows, Width width) noexcept {
+    std::array<bool, MaxColumns> used{};
+    const int steps = rows < columns_ ? rows : columns_;
+    double largest = 0.0;
+    for (rank_ = 0; rank_ < steps; ++rank_) {
+      const int k = rank_;
+      // Rows above k have moved to R and are zero, and so are columns that are done, but for rounding.
+      std::array<double, kWidth> norms2{};
+      for (int j = 0; j < width; j += kLanes) {
+        Lanes even{}, odd{};
+        for (int i = 0; i < rows; ++i) {
+          const Lanes x = lanes_at(&a_[i][j]);
+          (i % 2 == 0 ? even : odd) += x * x;
+        }
+        lanes_at(&norms2[j]) = even + odd;
+      }
+      int best = 0;
+      for (int j = 1; j < columns_; ++j) best = norms2[j] > norms2[best] ? j : best;
+      if (k == 0) largest = norms2[best];
+      if (!(norms2[best] > kRankTolerance * kRankTolerance * largest)) break;
+      pivot_[k] = best;
+      used[best] = true;
+
+      // Reflect that column onto the axis k: v = x - alpha e_k with alpha of the sign opposite to x_k.
+      std::array<double, MaxRows>& v = v_[k];
+      for (int i = 0; i < rows; ++i) v[i] = a_[i][best];
+      const double norm = std::sqrt(norms2[best]);
+      const double alpha = v[k] > 0.0 ? -norm : norm;
+      scale_[k] = 1.0 / (norms2[best] + norm * std::abs(v[k]));  // 2 / (v.v)
+      diagonal_[k] = alpha;
+      reciprocal_[k] = 1.0 / alpha;
+      v[k] -= alpha;
+      for (int j = 0; j < width; j += kLanes) {
+        Lanes even{}, odd{};
+        for (int i = 0; i < rows; ++i) (i % 2 == 0 ? even : odd) += v[i] * lanes_at(&a_[i][j]);
+        const Lanes factor = scale_[k] * (even + odd);
+        for (int i = 0; i < rows; ++i) lanes_at(&a_[i][j]) -= v[i] * factor;
+        lanes_at(&r_[k][j]) = lanes_at(&a_[k][j]);
+        lanes_at(&a_[k][j]) = Lanes{};
+      }
+    }
+    for (int j = 0, next = rank_; j < columns_; ++j) {
+      if (!used[j]) pivot_[next++] = j;
+    }
+  }
+
+  template <class Rows, class Vector>
+  void reflect(Rows rows, int k, Vector& b) const noexcept {
+    std::remove_cvref_t<decltype(b[0])> even{}, odd{};
+    for (int i = 0; i < rows; ++i) (i % 2 == 0 ? even : odd) += v_[k][i] * b[i];
+    even += odd;
+    even *= scale_[k];
+    for (int i = 0; i < rows; ++i) b[i] -= v_[k][i] * even;
+  }
+
+  static constexpr int whole_lanes(int columns) { return (columns + kLanes - 1) / kLanes * kLanes; }
+  static constexpr int kWidth = whole_lanes(MaxColumns);
+  static constexpr int kSteps = MaxRows < MaxColumns ? MaxRows : MaxColumns;
 
   int rows_ = 0;
   int columns_ = 0;
   int rank_ = 0;
-  // Column j holds R above the diagonal and Householder vector j from the diagonal down.
-  std::array<std::array<double, MaxRows>, MaxColumns> a_;
-  std::array<double, MaxColumns> diagonal_;
-  std::array<double, MaxColumns> scale_;
-  std::array<int, MaxColumns> pivot_;
+  std::array<std::array<double, kWidth>, MaxRows> a_;  // what is left to factor, by rows
+  std::array<std::array<double, kWidth>, kSteps> r_;   // rows of R above its diagonal, columns as given
+  std::array<std::array<double, MaxRows>, kSteps> v_;  // Householder vectors, zero above the diagonal
+  std::array<double, kSteps> diagonal_;
+  std::array<double, kSteps> reciprocal_;  // of the diagonal
+  std::array<double, kSteps> scale_;
+  std::array<int, MaxColumns> pivot_;  // columns in the order of their steps, then those left out
 };
 
 }  // namespace zwidth

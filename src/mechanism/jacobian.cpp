@@ -60,7 +60,9 @@ BiasAcceleration bias_acceleration(const Posture& posture, const Rates& rates,
   BiasAcceleration bias;
   bias.tool.setZero(mechanism.tool_rows());
   bias.joints.setZero(mechanism.joint_count());
-  Closure(posture).solve(w, bias.tool, bias.joints);
+  std::array<double, 6> tool;
+  Closure(posture).solve(w, tool, [&bias](int j, double acceleration) { bias.joints[j] = acceleration; });
+  bias.tool = Eigen::Map<const Vector6>(tool.data()).head(mechanism.tool_rows());
   return bias;
 }
 

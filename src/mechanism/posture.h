@@ -26,28 +26,41 @@ class Posture {
 
   /// Origin of the link that joint j moves (a point on the joint's axis), and the axis' direction, in the base
   /// frame.
-  const Vector3& joint_point(int j) const { return points_[j]; }
-  const Vector3& joint_axis(int j) const { return axes_[j]; }
+  const Vector3& joint_point(int j) const { return links_[j].point; }
+  const Vector3& joint_axis(int j) const { return links_[j].axis; }
   /// Orientation of the link that joint j moves.
-  const Matrix3& link_rotation(int j) const { return links_[j]; }
+  const Matrix3& link_rotation(int j) const { return links_[j].rotation; }
   /// Where leg l meets the platform, base frame [m].
-  const Vector3& leg_tip(int l) const { return tips_[l]; }
+  const Vector3& leg_tip(int l) const { return tips_[l].point; }
   /// Orientation that leg l gives the platform: of what follows its last joint (of its last link, unless that
   /// is a parallelogram's bars), times `LegModel::platform_rotation`.
-  const Matrix3& leg_tip_rotation(int l) const { return tip_rotations_[l]; }
+  const Matrix3& leg_tip_rotation(int l) const { return tips_[l].rotation; }
+
+  // Copies what is in use: most mechanisms fill a small part of the arrays.
+  Posture(const Posture& other) { *this = other; }
+  Posture& operator=(const Posture& other);
 
  private:
   friend class internal::PostureBuilder;
   explicit Posture(const Mechanism& mechanism) : mechanism_(&mechanism) {}
 
+  // The idle numbers let every vector be written as four lanes.
+  struct Link {
+    Vector3 point, axis;
+    Matrix3 rotation;
+    double idle;
+  };
+  struct Tip {
+    Vector3 point;
+    Matrix3 rotation;
+    double idle;
+  };
+
   const Mechanism* mechanism_;
   JointVector joints_;
   Pose tool_;
-  std::array<Vector3, kMaxJoints> points_;
-  std::array<Vector3, kMaxJoints> axes_;
-  std::array<Matrix3, kMaxJoints> links_;
-  std::array<Vector3, kMaxLegs> tips_;
-  std::array<Matrix3, kMaxLegs> tip_rotations_;
+  std::array<Link, kMaxJoints> links_;
+  std::array<Tip, kMaxLegs> tips_;
 };
 
 /// How to solve.
@@ -66,9 +79,9 @@ struct Solution {
   int iterations = 0;  ///< Newton steps; 0 for a closed form
   double residual =
       -1.0;  ///< closure error left where solving stopped [m, rad x characteristic length]; -1 if none
-  double conditioning = 0.0;    ///< reciprocal condition of the closure at the answer, 0 singular .. 1
-  bool other_assembly = false;  ///< the joints, driven to these values, would take the tool elsewhere: the
-                                ///< posture is of another assembly mode than the mechanism's own
+  double conditioning = 0.0;       ///< reciprocal condition of the closure at the answer, 0 singular .. 1
+  bool other_assembly = false;     ///< the joints, driven to these values, would take the tool elsewhere: the
+                                   ///< posture is of another assembly mode than the mechanism's own
   std::optional<Posture> posture;  ///< present unless unreachable or degenerate
 
   explicit operator bool() const { return posture.has_value(); }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
 
@@ -57,6 +58,22 @@ class Stagnation {
   int since_ = 0;
 };
 
+// Says when the factors of the last Newton step will do for the next one too. Their step leaves of the residual
+// about twice what the last one left; if that meets the tolerance with much to spare, there is no need to
+// factor again for it.
+class Reuse {
+ public:
+  bool allowed(double residual, double tolerance) {
+    constexpr double kSpare = 5.0;
+    const bool reuse = residual * residual * 2.0 * kSpare < tolerance * before_;
+    before_ = reuse ? 0.0 : residual;
+    return reuse;
+  }
+
+ private:
+  double before_ = 0.0;  // the residual that the factors were made for; 0 if there are none
+};
+
 double scaled(const JointModel& joint, double change, double length) {
   return std::abs(joint.type == JointType::prismatic ? change / length : change);
 }
@@ -71,15 +88,18 @@ double damping(double largest) {
 
 // Closes the loops of `posture` at its active joints by moving passive joints and platform. `closure` is left
 // as the last step had it, factored at or next to the answer.
-Newton close_loops(Posture& posture, double tolerance, int limit, Budget& budget, Closure& closure) {
+ZWIDTH_WIDE Newton close_loops(Posture& posture, double tolerance, int limit, Budget& budget,
+                               Closure& closure) {
   const Mechanism& mechanism = posture.mechanism();
   const int legs = static_cast<int>(mechanism.legs().size());
   const double length = mechanism.characteristic_length();
+  const bool turns = mechanism.tool_turns();
   JointVector& joints = PostureBuilder::joints(posture);
   Pose& tool = PostureBuilder::tool(posture);
 
   Newton newton;
   Stagnation stagnation;
+  Reuse reuse;
   ClosureVector error;
   std::array<double, 6> twist;
   JointVector change = JointVector::Zero(mechanism.joint_count());
@@ -98,8 +118,8 @@ Newton close_loops(Posture& posture, double tolerance, int limit, Budget& budget
     --budget.left;
     ++budget.used;
 
-    closure.factor(posture);
-    closure.solve(error, twist, change);
+    if (!reuse.allowed(newton.residual, tolerance)) closure.factor(posture);
+    closure.solve(error, twist, [&change](int j, double correction) { change[j] = correction; });
     double largest = 0.0;
     for (int j = 0; j < mechanism.joint_count(); ++j) {
       largest = std::max(largest, scaled(mechanism.joints()[j], change[j], length));
@@ -111,8 +131,8 @@ Newton close_loops(Posture& posture, double tolerance, int limit, Budget& budget
     for (std::size_t r = 0; r < axes.size(); ++r) {
       (axes[r] < 3 ? tool.position[axes[r]] : turn[axes[r] - 3]) += share * twist[r];
     }
-    if (const double angle = turn.norm(); angle > 0.0) {
-      tool.rotation = Eigen::AngleAxisd(angle, turn / angle) * tool.rotation;
+    if (turns) {
+      tool.rotation = internal::orthonormal(internal::turned_by(turn, tool.rotation));
     }
   }
 }
@@ -210,7 +230,7 @@ Solution forward_general(const Mechanism& mechanism, const ActiveVector& active,
   Solution solution;
   Newton newton;
   if (options.start != nullptr) {
-    solution.posture = *options.start;
+    solution.posture = PostureBuilder::unplaced(*options.start);
     newton = lead_active(*solution.posture, active, options.tolerance, budget, closure);
   }
   if (!newton.converged && (options.start == nullptr || options.restart)) {  // from home there may be a way
@@ -234,13 +254,16 @@ Solution forward_general(const Mechanism& mechanism, const ActiveVector& active,
 
 // Moves the joints of leg l until its tip meets the platform, where `posture` has it. A leg with more joints
 // than closure rows moves as little as it can.
-Newton reach(Posture& posture, int l, double tolerance, int limit, Budget& budget) {
+ZWIDTH_WIDE Newton reach(Posture& posture, int l, double tolerance, int limit, Budget& budget) {
   const Mechanism& mechanism = posture.mechanism();
   const LegModel& leg = mechanism.legs()[l];
   const double length = mechanism.characteristic_length();
   JointVector& joints = PostureBuilder::joints(posture);
   Newton newton;
   Stagnation stagnation;
+  Reuse reuse;
+  SmallQr<6, kMaxLegJoints> qr;  // of the columns, or where there are more joints than rows, of their transpose
+  SmallQr<kMaxLegJoints, 6> transposed_qr;
   std::array<double, 6> error, column;
   std::array<double, kMaxLegJoints> change;
   while (true) {
@@ -256,25 +279,20 @@ Newton reach(Posture& posture, int l, double tolerance, int limit, Budget& budge
     --budget.left;
     ++budget.used;
 
-    if (leg.count <= rows) {
-      SmallQr<6, kMaxLegJoints> qr;
-      qr.resize(rows, leg.count);
+    const bool fresh = !reuse.allowed(newton.residual, tolerance), redundant = leg.count > rows;
+    if (fresh) {
+      redundant ? transposed_qr.resize(leg.count, rows) : qr.resize(rows, leg.count);
       for (int j = 0; j < leg.count; ++j) {
         closure_column(posture, l, leg.first + j, column);
-        for (int i = 0; i < rows; ++i) qr.at(i, j) = column[i];
+        for (int i = 0; i < rows; ++i) (redundant ? transposed_qr.at(j, i) : qr.at(i, j)) = column[i];
       }
-      qr.factor();
+      redundant ? transposed_qr.factor() : qr.factor();
+    }
+    if (redundant) {
+      transposed_qr.solve_transposed(error, change);
+    } else {
       qr.apply_q_transposed(error);
       qr.back_substitute(error, change);
-    } else {
-      SmallQr<kMaxLegJoints, 6> qr;
-      qr.resize(leg.count, rows);
-      for (int j = 0; j < leg.count; ++j) {
-        closure_column(posture, l, leg.first + j, column);
-        for (int i = 0; i < rows; ++i) qr.at(j, i) = column[i];
-      }
-      qr.factor();
-      qr.solve_transposed(error, change);
     }
     double largest = 0.0;
     for (int j = 0; j < leg.count; ++j) {
@@ -286,7 +304,7 @@ Newton reach(Posture& posture, int l, double tolerance, int limit, Budget& budge
 }
 
 Pose between(const Pose& from, const Pose& to, double share) {
-  const Vector3 turn = internal::rotation_vector(to.rotation * from.rotation.transpose());
+  const Vector3 turn = internal::rotation_between(from.rotation, to.rotation);
   const double angle = turn.norm();
   Pose pose{.position = from.position + share * (to.position - from.position), .rotation = from.rotation};
   if (angle > 0.0) pose.rotation = Eigen::AngleAxisd(share * angle, turn / angle) * from.rotation;
@@ -301,7 +319,7 @@ Newton lead_leg(Posture& posture, int l, const Pose& from, const Pose& to, doubl
   JointVector& joints = PostureBuilder::joints(posture);
   Pose& tool = PostureBuilder::tool(posture);
   const double way = std::max((to.position - from.position).norm() / length,
-                              internal::rotation_vector(to.rotation * from.rotation.transpose()).norm());
+                              internal::rotation_between(from.rotation, to.rotation).norm());
   double step = 1.0 / std::max(1.0, std::ceil(way / kLongestStep));
   double done = 0.0;
   Newton newton;
@@ -488,7 +506,7 @@ bool stands_elsewhere(const Posture& posture, const SolveOptions& options) {
   if (!driven) return false;
   const Pose &here = posture.tool(), &there = driven.posture->tool();
   return (there.position - here.position).norm() > kSame * mechanism.characteristic_length() ||
-         internal::rotation_vector(there.rotation * here.rotation.transpose()).norm() > kSame;
+         internal::rotation_between(here.rotation, there.rotation).norm() > kSame;
 }
 
 // Of the mechanism's own assembly mode, or none. A posture beyond a joint's range is no answer in any mode, and
@@ -503,6 +521,18 @@ Solution own_assembly(Solution solution, const SolveOptions& options) {
 }
 
 }  // namespace
+
+Posture& Posture::operator=(const Posture& other) {
+  mechanism_ = other.mechanism_;
+  joints_ = other.joints_;
+  tool_ = other.tool_;
+  const auto copy = [](auto& to, const auto& from, std::size_t count) {
+    std::memcpy(static_cast<void*>(to.data()), from.data(), count * sizeof to[0]);
+  };
+  copy(links_, other.links_, mechanism_->joints().size());
+  copy(tips_, other.tips_, mechanism_->legs().size());
+  return *this;
+}
 
 ActiveVector Posture::active() const {
   ActiveVector active(mechanism_->active_count());

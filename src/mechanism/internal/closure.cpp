@@ -5,45 +5,52 @@
 
 namespace zwidth::internal {
 
-void Closure::factor(const Posture& posture) noexcept {
+ZWIDTH_WIDE void Closure::factor(const Posture& posture) noexcept {
   const Mechanism& mechanism = posture.mechanism();
   leg_count_ = static_cast<int>(mechanism.legs().size());
   tool_rows_ = mechanism.tool_rows();
   linear_rows_ = mechanism.linear_rows();
   length_ = mechanism.characteristic_length();
 
-  int left_over = 0;
   for (int l = 0; l < leg_count_; ++l) {
     const LegModel& model = mechanism.legs()[l];
     Leg& leg = legs_[l];
-    leg.rows = closure_rows(model);
     int columns = 0;
     for (int j = model.first; j < model.first + model.count; ++j) {
       if (mechanism.joints()[j].active < 0) leg.joints[columns++] = j;
     }
-    leg.passive.resize(leg.rows, columns);
+    leg.passive.resize(closure_rows(model), columns);
     std::array<double, 6> column;
     for (int c = 0; c < columns; ++c) {
       closure_column(posture, l, leg.joints[c], column);
-      for (int i = 0; i < leg.rows; ++i) leg.passive.at(i, c) = column[i];
+      for (int i = 0; i < leg.passive.rows(); ++i) leg.passive.at(i, c) = column[i];
     }
-    leg.passive.factor();
     platform_columns(posture, l, leg.platform);
-    for (int c = 0; c < tool_rows_; ++c) leg.passive.apply_q_transposed(leg.platform[c]);
-    left_over += leg.rows - leg.passive.rank();
+  }
+
+  for (bool more = true; more;) {
+    more = false;
+    for (int l = 0; l < leg_count_; ++l) more |= legs_[l].passive.step();
+  }
+  int left_over = 0;
+  for (int l = 0; l < leg_count_; ++l) {
+    legs_[l].passive.finish();
+    left_over += legs_[l].left_over();
   }
 
   platform_.resize(left_over, tool_rows_);
   int row = 0;
   for (int l = 0; l < leg_count_; ++l) {
-    for (int i = legs_[l].passive.rank(); i < legs_[l].rows; ++i, ++row) {
-      for (int c = 0; c < tool_rows_; ++c) platform_.at(row, c) = legs_[l].platform[c][i];
+    const Leg& leg = legs_[l];
+    for (int i = 0; i < leg.left_over(); ++i, ++row) {
+      for (int c = 0; c < tool_rows_; ++c)
+        leg.passive.product(leg.passive.left_over(i), leg.platform[c], platform_.at(row, c));
     }
   }
   platform_.factor();
 }
 
-double Closure::drive_condition(const Posture& posture) const noexcept {
+ZWIDTH_WIDE double Closure::drive_condition(const Posture& posture) const noexcept {
   const Mechanism& mechanism = posture.mechanism();
   SmallQr<6 * kMaxLegs, kMaxActive> drive;
   drive.resize(platform_.rows(), mechanism.active_count());
@@ -51,7 +58,6 @@ double Closure::drive_condition(const Posture& posture) const noexcept {
   double longest = 0.0;  // lever of an active joint, squared
   for (int l = 0; l < leg_count_; ++l) {
     const Leg& leg = legs_[l];
-    const int rank = leg.passive.rank(), left_over = leg.rows - rank;
     const LegModel& model = mechanism.legs()[l];
     for (int j = model.first; j < model.first + model.count; ++j) {
       const int a = mechanism.joints()[j].active;
@@ -59,34 +65,44 @@ double Closure::drive_condition(const Posture& posture) const noexcept {
       std::array<double, 6> column;
       closure_column(posture, l, j, column);
       double lever = 0.0;
-      for (int i = 0; i < leg.rows; ++i) lever += column[i] * column[i];
+      for (int i = 0; i < leg.passive.rows(); ++i) lever += column[i] * column[i];
       longest = std::max(longest, lever);
-      leg.passive.apply_q_transposed(column);
-      for (int i = 0; i < platform_.rows(); ++i) drive.at(i, a) = 0.0;
-      for (int i = 0; i < left_over; ++i) drive.at(first + i, a) = column[rank + i];
+      for (int i = 0; i < leg.left_over(); ++i)
+        leg.passive.product(leg.passive.left_over(i), column, drive.at(first + i, a));
     }
-    first += left_over;
+    first += leg.left_over();
   }
   drive.factor();
   return longest > 0.0 ? drive.smallest_pivot() / std::sqrt(longest) : 0.0;
 }
 
-Rates rates_of(const Posture& posture, const Closure& closure) noexcept {
+ZWIDTH_WIDE Rates rates_of(const Posture& posture, const Closure& closure) noexcept {
   const Mechanism& mechanism = posture.mechanism();
   Rates result;
   result.tool.setZero(mechanism.tool_rows(), mechanism.active_count());
   result.joints.setZero(mechanism.joint_count(), mechanism.active_count());
   result.closure = closure.reciprocal_condition();
-  ClosureVector w{};
-  for (int l = 0; l < static_cast<int>(mechanism.legs().size()); ++l) {
-    const LegModel& leg = mechanism.legs()[l];
-    for (int j = leg.first; j < leg.first + leg.count; ++j) {
-      const int a = mechanism.joints()[j].active;
-      if (a < 0) continue;
-      closure_column(posture, l, j, w[l]);
-      result.joints(j, a) = 1.0;
-      closure.solve(w, result.tool.col(a), result.joints.col(a));
-      w[l].fill(0.0);
+  // Four active joints at a time, each in a lane of its own.
+  for (int first = 0; first < mechanism.active_count(); first += kLanes) {
+    const int count = std::min(kLanes, mechanism.active_count() - first);
+    ClosureRows<Lanes> w{};
+    for (int l = 0; l < static_cast<int>(mechanism.legs().size()); ++l) {
+      const LegModel& leg = mechanism.legs()[l];
+      for (int j = leg.first; j < leg.first + leg.count; ++j) {
+        const int a = mechanism.joints()[j].active, lane = a - first;
+        if (a < first || lane >= count) continue;
+        std::array<double, 6> column;
+        closure_column(posture, l, j, column);
+        for (int i = 0; i < closure_rows(leg); ++i) w[l][i][lane] = column[i];
+        result.joints(j, a) = 1.0;
+      }
+    }
+    std::array<Lanes, 6> twist;
+    closure.solve(w, twist, [&](int j, const Lanes& rate) {
+      for (int lane = 0; lane < count; ++lane) result.joints(j, first + lane) = rate[lane];
+    });
+    for (int r = 0; r < mechanism.tool_rows(); ++r) {
+      for (int lane = 0; lane < count; ++lane) result.tool(r, first + lane) = twist[r][lane];
     }
   }
   return result;

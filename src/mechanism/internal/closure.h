@@ -2,21 +2,25 @@
 
 #include <array>
 
+#include "zwidth/math/elimination.h"
 #include "zwidth/math/small_qr.h"
 #include "zwidth/mechanism/internal/posture_builder.h"
 #include "zwidth/mechanism/jacobian.h"
 
 namespace zwidth::internal {
 
-/// One right-hand side of the closure equations: `rows` values for each leg.
-using ClosureVector = std::array<std::array<double, 6>, kMaxLegs>;
+/// A right-hand side of the closure equations, `rows` values for each leg; or several, in the lanes of `Lanes`.
+template <class Number>
+using ClosureRows = std::array<std::array<Number, 6>, kMaxLegs>;
+using ClosureVector = ClosureRows<double>;
 
 /// The linearised loop closure of a posture, factored once for any number of right-hand sides.
 ///
 /// For each leg, with passive rates q_p, platform twist x (angular part times the characteristic length) and
-/// any known velocity w of its tip:  A q_p + w - B x = 0.  A QR of each leg's A eliminates q_p; what remains of
-/// all legs, K x = k, is solved for x by a second one. Rows may outnumber unknowns (overconstrained
-/// mechanisms): the least-squares answer is exact whenever the equations agree. No heap.
+/// any known velocity w of its tip:  A q_p + w - B x = 0.  A QR of each leg's A eliminates q_p: with N the
+/// wrenches that no passive joint feels (N^T A = 0),  N^T B x = N^T w.  Of all legs together, K x = k, that is
+/// solved for x by a second QR. Rows may outnumber unknowns (overconstrained mechanisms): the least-squares
+/// answer is exact whenever the equations agree. No heap.
 class Closure {
  public:
   Closure() = default;
@@ -25,31 +29,33 @@ class Closure {
   /// The passive joints' frames, legs and platform of `posture` are taken as they are, closed or not.
   void factor(const Posture& posture) noexcept;
 
-  /// Platform twist and passive rates (active entries of `rates` are left as they are) for tip velocities `w`.
-  template <class ToolRates, class JointRates>
-  void solve(const ClosureVector& w, ToolRates&& twist, JointRates&& rates) const noexcept {
-    std::array<double, 6 * kMaxLegs> k;
-    ClosureVector y = w;
+  /// Platform twist and passive rates for tip velocities `w`; `passive(j, rate)` is called with each passive
+  /// joint's.
+  template <class Number, class Passive>
+  void solve(const ClosureRows<Number>& w, std::array<Number, 6>& twist, Passive&& passive) const noexcept {
+    std::array<Number, 6 * kMaxLegs> k;
     int row = 0;
     for (int l = 0; l < leg_count_; ++l) {
-      legs_[l].passive.apply_q_transposed(y[l]);
-      for (int i = legs_[l].passive.rank(); i < legs_[l].rows; ++i) k[row++] = y[l][i];
+      const Leg& leg = legs_[l];
+      for (int i = 0; i < leg.left_over(); ++i) leg.passive.product(leg.passive.left_over(i), w[l], k[row++]);
     }
-    std::array<double, 6> x;
+    std::array<Number, 6>& x = twist;
     platform_.apply_q_transposed(k);
     platform_.back_substitute(k, x);
     for (int l = 0; l < leg_count_; ++l) {
       const Leg& leg = legs_[l];
-      for (int i = 0; i < leg.passive.rank(); ++i) {
-        double sum = -y[l][i];
-        for (int c = 0; c < tool_rows_; ++c) sum += leg.platform[c][i] * x[c];
-        y[l][i] = sum;
+      std::array<Number, 6> y{};
+      for (int i = 0; i < leg.passive.rows(); ++i) y[i] = -w[l][i];
+      for (int c = 0; c < tool_rows_; ++c) {
+        for (int i = 0; i < leg.passive.rows(); ++i) y[i] += leg.platform[c][i] * x[c];
       }
-      std::array<double, kMaxLegJoints> passive;
-      leg.passive.back_substitute(y[l], passive);
-      for (int c = 0; c < leg.passive.columns(); ++c) rates[leg.joints[c]] = passive[c];
+      for (int c = 0; c < leg.passive.columns(); ++c) {
+        Number rate;
+        leg.passive.product(leg.passive.inverse(c), y, rate);
+        passive(leg.joints[c], rate);
+      }
     }
-    for (int c = 0; c < tool_rows_; ++c) twist[c] = c < linear_rows_ ? x[c] : x[c] / length_;
+    for (int c = linear_rows_; c < tool_rows_; ++c) x[c] /= length_;
   }
 
   /// Reciprocal condition of K: 0 where the platform keeps a freedom with all active joints locked.
@@ -62,10 +68,11 @@ class Closure {
 
  private:
   struct Leg {
-    int rows = 0;
-    SmallQr<6, kMaxLegJoints> passive;              // A
+    Elimination passive;                            // of A
     std::array<int, kMaxLegJoints> joints;          // of A's columns
-    std::array<std::array<double, 6>, 6> platform;  // Q^T B, by columns
+    std::array<std::array<double, 6>, 6> platform;  // B, by columns
+
+    int left_over() const { return passive.rows() - passive.rank(); }
   };
 
   int leg_count_ = 0;

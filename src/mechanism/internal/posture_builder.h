@@ -8,6 +8,13 @@ namespace zwidth::internal {
 class PostureBuilder {
  public:
   static Posture open(const Mechanism& mechanism) { return Posture(mechanism); }
+  /// Joints and tool of another posture; its frames are not placed yet.
+  static Posture unplaced(const Posture& other) {
+    Posture posture(*other.mechanism_);
+    posture.joints_ = other.joints_;
+    posture.tool_ = other.tool_;
+    return posture;
+  }
 
   static JointVector& joints(Posture& posture) { return posture.joints_; }
   static Pose& tool(Posture& posture) { return posture.tool_; }
@@ -15,6 +22,10 @@ class PostureBuilder {
   /// Recomputes the frames of leg l from its joints.
   static void place_leg(Posture& posture, int l) noexcept;
   static void place_legs(Posture& posture) noexcept;
+
+ private:
+  struct Turns;  // sines and cosines of the joints
+  static void place(Posture& posture, int l, const Turns& turns) noexcept;
 };
 
 /// Closure error of leg l, tip minus platform point, and for a rigid attachment link against platform
@@ -34,8 +45,17 @@ inline int closure_rows(const LegModel& leg) {
   return leg.attachment == Attachment::rigid ? 6 : 3;
 }
 
-/// Smallest rotation vector of R [rad].
-Vector3 rotation_vector(const Matrix3& R) noexcept;
+/// Smallest rotation vector that turns `from` into `to`, in the frame that both map to [rad].
+Vector3 rotation_between(const Matrix3& from, const Matrix3& to) noexcept;
+
+/// R turned by a rotation vector that is given in the frame R maps to [rad].
+Matrix3 turned_by(const Vector3& turn, const Matrix3& R) noexcept;
+
+/// The rotation nearest to R, which is one but for rounding: what a long row of products needs now and then.
+inline Matrix3 orthonormal(const Matrix3& R) {
+  return R *
+         (1.5 * Matrix3::Identity() - 0.5 * R.transpose() * R);  // one step of Newton's for the polar factor
+}
 
 /// Brings a revolute angle into its range if a whole number of turns does, else into (-pi, pi].
 double wrapped(const JointModel& joint, double value) noexcept;

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -103,9 +104,11 @@ const Named& named(const char* option, const std::string& text, const std::vecto
 
 LoadDescription parsed_load(const SizeArguments& arguments, const Description& description,
                             const Mechanism& mechanism, const std::string& text) {
-  // Anything that starts like a number is one.
-  const bool numbers = text.find_first_of("+-.0123456789") == 0;
-  if (!numbers) return named("--load", text, description.loads, "load");
+  // A name first, for it may start with a digit; then whatever has a comma or starts like a number is numbers.
+  const bool known = std::any_of(description.loads.begin(), description.loads.end(),
+                                 [&](const LoadDescription& load) { return load.name == text; });
+  const bool numbers = text.find(',') != text.npos || text.find_first_of("+-.0123456789") == 0;
+  if (known || !numbers) return named("--load", text, description.loads, "load");
   const auto commas = std::count(text.begin(), text.end(), ',');
   if (commas != 2 && commas != 5) {
     throw InputError(fmt::format(
@@ -346,7 +349,6 @@ class Answer {
           2, Tint::warning);
       notes_.push_back("moments in the frame \"published\" reproduce a source's tables; they are not physics");
     }
-    sheet_.heading("Torque");
     joint_table(sizing);
     if (where_key_ == "postures") case_list(sizing);
     for (int j = 0; j < mechanism_.active_count(); ++j) {
@@ -374,7 +376,7 @@ class Answer {
 
   void joint_table(const Sizing& sizing) {
     Json joints = Json::array();
-    std::vector<std::vector<std::string>> rows;
+    std::array<std::vector<std::vector<std::string>>, 2> rows;  // continuous, peak
     for (int j = 0; j < mechanism_.active_count(); ++j) {
       const auto index = static_cast<size_t>(j);
       const std::string& name = mechanism_.active_names()[index];
@@ -402,27 +404,31 @@ class Answer {
       for (const LoadKind kind : {LoadKind::continuous, LoadKind::peak}) {
         const JointDemand& demand = sizing.demands(kind)[index];
         if (demand.posture < 0) continue;
-        const TorqueLimit& limit = kind == LoadKind::peak ? peak : continuous;
+        const TorqueLimit& limit_of = kind == LoadKind::peak ? peak : continuous;
         const LoadDescription& load = loads_[static_cast<size_t>(demand.load)];
         Json item{{"required", json_number(std::abs(demand.torque))},
                   {"available", json_number(demand.available)},
                   {"utilisation", json_number(demand.utilisation)},
                   {"ok", demand.ok},
-                  {"limited_by", drive ? to_string(limit.limited_by) : "no drive"},
+                  {"limited_by", drive ? to_string(limit_of.limited_by) : "no drive"},
                   {"posture", posture_name(demand.posture)},
                   {"load", load.name}};
         if (drive) item["motor_torque"] = json_number(drive->motor_torque(std::abs(demand.torque)));
         demands[to_string(kind)] = item;
-        rows.push_back({name, to_string(kind), number(std::abs(demand.torque)), number(demand.available),
-                        percent(demand.utilisation), demand.ok ? "✓" : "✗",
-                        drive ? to_string(limit.limited_by) : "no drive", posture_name(demand.posture),
-                        load.name});
+        const std::string limit = drive ? to_string(limit_of.limited_by) : "no drive";
+        rows[kind == LoadKind::peak ? 1 : 0].push_back(
+            {name, number(std::abs(demand.torque)), number(demand.available), percent(demand.utilisation),
+             demand.ok ? "✓" : "✗ " + limit, posture_name(demand.posture), load.name});
       }
       entry["demands"] = demands;
       joints.push_back(entry);
     }
-    sheet_.table({"joint", "kind", "required", "N m there", "used", "", "limit", "posture", "load"}, rows,
-                 false);
+    for (const LoadKind kind : {LoadKind::continuous, LoadKind::peak}) {
+      auto& of_kind = rows[kind == LoadKind::peak ? 1 : 0];
+      if (of_kind.empty()) continue;
+      sheet_.heading(kind == LoadKind::peak ? "Torque for a short time" : "Torque for ever");
+      sheet_.table({"joint", "required", "of N m", "used", "", "posture", "load"}, of_kind, false);
+    }
     document_["joints"] = joints;
   }
 
@@ -504,7 +510,7 @@ class Answer {
       entry["ratio"] = json_number(drive.ratio());
       entry["least_ratio"] = json_number(*ratio);
       sheet_.paragraph(fmt::format("Motor and amplifier need a ratio of {} for this; it is {}.",
-                                   trimmed(*ratio, 3), trimmed(drive.ratio(), 4)));
+                                   trimmed(*ratio, 4), trimmed(drive.ratio(), 4)));
     }
     Json broken = Json::array();
     for (const Margin& margin : standing_failures(drive)) {
@@ -530,7 +536,7 @@ class Answer {
 
   void parts(const Drive& drive, const DriveDemand& demand, Json& entry) {
     Json list = Json::array();
-    std::vector<std::vector<std::string>> rows;
+    std::vector<std::vector<std::string>> rows, pairs;
     for (const DriveCandidate& candidate : drive_candidates(drive, catalogue(), demand)) {
       list.push_back({{"kind", candidate.kind},
                       {"name", candidate.name},
@@ -541,16 +547,24 @@ class Answer {
                       {"reflected_inertia", json_number(candidate.reflected_inertia)},
                       {"utilisation", json_number(candidate.utilisation)},
                       {"reason", candidate.reason}});
-      // Of the many pairs only those that would do are worth a line.
-      if (candidate.kind == "motor and gearhead" && !candidate.fits) continue;
-      rows.push_back(
-          {candidate.kind, candidate.name, candidate.fits ? readable(candidate.continuous, "N m") : "–",
-           candidate.fits ? readable(candidate.reflected_inertia, "kg m^2", 3) : "–",
-           (candidate.fits ? "✓" : "✗ " + candidate.reason) + std::string(candidate.used ? "  in use" : "")});
+      const std::string verdict =
+          (candidate.fits ? fmt::format("✓ {}, {}", readable(candidate.continuous, "N m", 3),
+                                        readable(candidate.reflected_inertia, "kg m^2", 3))
+                          : "✗ " + candidate.reason) +
+          (candidate.used ? " (in use)" : "");
+      if (candidate.kind != "motor and gearhead") {
+        rows.push_back({candidate.kind, candidate.name, verdict});
+      } else if (candidate.fits) {  // of the many pairs only those that would do are worth a line
+        pairs.push_back({candidate.name, verdict});
+      }
     }
     entry["parts"] = list;
     sheet_.heading("Parts of the catalogue that would do, all else kept");
-    sheet_.table({"kind", "part", "would hold", "felt inertia", ""}, rows, false);
+    sheet_.table({"kind", "part", "holds for ever, felt inertia"}, rows, false);
+    if (!pairs.empty()) {
+      sheet_.gap();
+      sheet_.table({"motor and gearhead", "holds for ever, felt inertia"}, pairs, false);
+    }
   }
 
   const Model& model_;

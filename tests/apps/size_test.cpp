@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+#include "run_command.h"
+
+namespace zwidth::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+const Json& demand(const Json& document, int joint, const char* kind) {
+  return document["joints"][static_cast<std::size_t>(joint - 1)]["demands"][kind];
+}
+
+TEST(Size, TheSevenDofArmMeetsWhatItsSourceAsksButForTwoMotorsAndTheWrist) {  // Baser 2006, section 5.1
+  const Outcome outcome = run({"size", "seven-dof", "--json"});
+  EXPECT_EQ(outcome.status, 1);
+  const Json document = outcome.json();
+  EXPECT_EQ(document["cases"].size(), 18u);
+  const double peak[] = {5.080, 4.226, 2.665, 2.364}, continuous[] = {0.886, 0.560, 0.546, 0.530};
+  const bool met[] = {true, true, false, false};
+  for (int joint = 1; joint <= 4; ++joint) {
+    const Json &for_ever = demand(document, joint, "continuous"), &for_short = demand(document, joint, "peak");
+    // The source leaves out what the balance leaves of the weight, at most 0.020 N m.
+    EXPECT_NEAR(for_short["required"].get<double>(), peak[joint - 1], 0.0205) << joint;
+    EXPECT_NEAR(for_ever["required"].get<double>(), continuous[joint - 1], 0.0205) << joint;
+    EXPECT_TRUE(for_short["ok"].get<bool>()) << joint;
+    EXPECT_EQ(for_ever["ok"].get<bool>(), met[joint - 1]) << joint;
+  }
+  for (const int joint : {5, 6}) {
+    EXPECT_EQ(demand(document, joint, "peak")["limited_by"], "gearhead");
+    EXPECT_NEAR(demand(document, joint, "peak")["available"].get<double>(), 0.225, 1e-12);
+  }
+  EXPECT_TRUE(document.contains("notes"));  // the moments are not physics
+}
+
+TEST(Size, MomentsAsTheyAreLetTheFourthMotorSuffice) {
+  const Json document = run({"size", "seven-dof", "--set", "load.moment_frame=base", "--json"}).json();
+  EXPECT_FALSE(document.contains("notes"));
+  EXPECT_FALSE(demand(document, 3, "continuous")["ok"].get<bool>());
+  EXPECT_TRUE(demand(document, 4, "continuous")["ok"].get<bool>());
+}
+
+TEST(Size, ALoadIsNamedOrGivenInNumbers) {
+  const std::string joints = "0,90deg,60deg,45deg,90deg,90deg,90deg";
+  const Json by_name =
+      run({"size", "seven-dof", "--load", "10 N along x", "--posture", "critical 1", "--json"}).json();
+  const Json in_numbers = run({"size", "seven-dof", "--load", "10,0,0,0.5,0.5,0.5", "--moment-frame",
+                               "published", "--kind", "peak", "--joints", joints, "--json"})
+                              .json();
+  ASSERT_EQ(by_name["cases"].size(), 1u);
+  EXPECT_EQ(by_name["cases"][0]["torques"], in_numbers["cases"][0]["torques"]);
+  EXPECT_EQ(in_numbers["load"].size(), 6u);
+  const Json at = run({"at", "seven-dof", "--joints", joints, "--load", "0,0,5,0,0,0.1", "--json"}).json();
+  const Json sized = run({"size", "seven-dof", "--load", "0,0,5,0,0,0.1", "--joints", joints, "--json"}).json();
+  for (std::size_t j = 0; j < 7; ++j) {
+    EXPECT_NEAR(sized["cases"][0]["torques"][j].get<double>(), at["torques"][j].get<double>(), 1e-12);
+  }
+}
+
+TEST(Size, FitsEightyColumns) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"size", "seven-dof"}, std::vector<std::string>{"size", "delta"}}) {
+    const std::string text = run(arguments).out;
+    int column = 0;
+    for (const char c : text) {
+      if (c == '\n') {
+        EXPECT_LE(column, 80) << arguments[1];
+        column = 0;
+      } else if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U) {
+        ++column;
+      }
+    }
+  }
+}
+
+TEST(Size, WrongLoadsAndPosturesAreExplained) {
+  struct Mistake {
+    std::vector<std::string> arguments;
+    const char* rule;
+  };
+  const Mistake mistakes[] = {
+      {{"size", "delta", "--load", "1,2"}, "has 2 entries"},
+      {{"size", "delta", "--load", "0,0,1,0,0,1"}, "does not turn"},
+      {{"size", "delta", "--load", "push"}, "has no [[load]]"},
+      {{"size", "seven-dof", "--load", "nan,0,0"}, "nan"},
+      {{"size", "seven-dof", "--load", "10 N along w"}, "10 N along w"},
+      {{"size", "seven-dof", "--posture", "critical 9"}, "is no [[posture]]"},
+      {{"size", "seven-dof", "--position", "0.3,0,0.1"}, "leaves its posture open"},
+      {{"size", "seven-dof", "--load", "0,0,1", "--kind", "peek"}, "did you mean \"peak\"?"},
+      {{"size", "seven-dof", "--joints", "0,1"}, "7 are expected"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    const Outcome outcome = run(mistake.arguments);
+    EXPECT_EQ(outcome.status, 2) << mistake.arguments.back();
+    EXPECT_EQ(outcome.out, "") << mistake.arguments.back();
+    EXPECT_NE(outcome.err.find(mistake.rule), std::string::npos) << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace zwidth::testing

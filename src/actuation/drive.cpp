@@ -10,9 +10,13 @@
 #include "zwidth/actuation/drive_problems.h"
 #include "zwidth/actuation/encoder.h"
 #include "zwidth/actuation/gearhead.h"
+#include "zwidth/actuation/internal/margin.h"
 #include "zwidth/math/linear_system.h"
 
 namespace zwidth {
+
+using internal::add_margin;
+
 namespace {
 
 using std::numbers::pi;
@@ -29,19 +33,6 @@ CurrentLoop make_current_loop(const DriveDescription& description) {
   const auto loop = CurrentLoop::make(description.motor.resistance, description.motor.inductance, gains);
   if (!loop) throw InvalidDrive("drive: the gains of the current loop must be finite");
   return *loop;
-}
-
-/// Adds the margin unless one side is not known.
-void add(std::vector<Margin>& margins, const char* name, double demand, double capability, const char* unit,
-         const char* rule) {
-  if (!std::isfinite(demand) || !std::isfinite(capability)) {
-    return;
-  }
-  constexpr double kRounding = 1e-9;
-  const std::optional<double> utilisation =
-      capability > 0.0 ? std::optional(demand / capability) : std::nullopt;
-  margins.push_back(
-      {name, demand, capability, unit, utilisation, demand <= capability * (1.0 + kRounding), rule});
 }
 
 }  // namespace
@@ -266,14 +257,14 @@ void Drive::add_gearhead_margins(std::vector<Margin>& margins) const {
   const Motor& motor = description_.motor;
   const double output = reduction(gear) * gear.max_efficiency;
   const double peak = motor.nominal_torque * description_.peak_factor;
-  add(margins, "gearhead torque, continuous", motor.nominal_torque * output, gear.continuous_torque, "N m",
-      "the gearhead must carry the nominal motor torque for ever");
-  add(margins, "gearhead torque, short", peak * output, gear.intermittent_torque, "N m",
-      "the gearhead must carry the peak motor torque for a short time");
-  add(margins, "gearhead speed", speed().unloaded * ratio_, gear.max_input_speed, "rad/s",
-      "the gearhead must permit the fastest that the motor can turn at the available voltage, unloaded");
-  add(margins, "motor shaft", motor.shaft_diameter, gear.max_motor_shaft, "m",
-      "the motor's shaft must fit the gearhead");
+  add_margin(margins, "gearhead torque, continuous", motor.nominal_torque * output, gear.continuous_torque,
+             "N m", "the gearhead must carry the nominal motor torque for ever");
+  add_margin(margins, "gearhead torque, short", peak * output, gear.intermittent_torque, "N m",
+             "the gearhead must carry the peak motor torque for a short time");
+  add_margin(margins, "gearhead speed", speed().unloaded * ratio_, gear.max_input_speed, "rad/s",
+             "the gearhead must permit the fastest that the motor can turn at the available voltage, unloaded");
+  add_margin(margins, "motor shaft", motor.shaft_diameter, gear.max_motor_shaft, "m",
+             "the motor's shaft must fit the gearhead");
 }
 
 void Drive::add_capstan_margins(std::vector<Margin>& margins) const {
@@ -282,32 +273,36 @@ void Drive::add_capstan_margins(std::vector<Margin>& margins) const {
   const double peak = motor.nominal_torque * description_.peak_factor;
   const CapstanLoads loads = capstan_->loads(capstan.preload, peak);
 
-  add(margins, "preload at continuous torque", capstan_->min_preload(motor.nominal_torque), capstan.preload,
-      "N", "the cable must not slip on the input pulley under the nominal motor torque (Neal 2015, eq 4.31)");
-  add(margins, "preload at peak torque", capstan_->min_preload(peak), capstan.preload, "N",
-      "the cable must not slip on the input pulley under the peak motor torque (Neal 2015, eq 4.31)");
-  add(margins, "cable tension", loads.high_tension,
+  add_margin(margins, "preload at continuous torque", capstan_->min_preload(motor.nominal_torque),
+             capstan.preload, "N",
+             "the cable must not slip on the input pulley under the nominal motor torque (Neal 2015, eq 4.31)");
+  add_margin(margins, "preload at peak torque", capstan_->min_preload(peak), capstan.preload, "N",
+             "the cable must not slip on the input pulley under the peak motor torque (Neal 2015, eq 4.31)");
+  add_margin(
+      margins, "cable tension", loads.high_tension,
       given(capstan.cable.max_working_load) ? capstan.cable.max_working_load : capstan.cable.breaking_load, "N",
       "the tight side under preload and peak torque must stay within the cable's load (Neal 2015, eq 4.27)");
-  add(margins, "cable bend radius", capstan.cable.min_bend_radius, 0.5 * capstan_->input_pitch_diameter, "m",
-      "the cable must not bend tighter around the input pulley than it may");
-  add(margins, "cable seat", capstan_->contact_diameter, capstan.input_diameter, "m",
-      "the cable must touch the flanks of the thread, not ride on its crests (Neal 2015, eq 4.18)");
-  add(margins, "wrap spacing", capstan.cable.coated_diameter, capstan.lead * std::cos(capstan_->cable_angle),
-      "m", "neighbouring wraps must not touch");
-  add(margins, "centre distance", capstan_->min_centre_distance, capstan.centre_distance, "m",
-      "the pulleys with their cable must not touch");
-  add(margins, "sector range", joint_range_.width(), capstan_->dimensions.output_range, "rad",
-      "the sector must carry cable for the whole range of the joint");
-  add(margins, "motor radial load", loads.bearing_radial, motor.max_radial_load, "N",
+  add_margin(margins, "cable bend radius", capstan.cable.min_bend_radius, 0.5 * capstan_->input_pitch_diameter,
+             "m", "the cable must not bend tighter around the input pulley than it may");
+  add_margin(margins, "cable seat", capstan_->contact_diameter, capstan.input_diameter, "m",
+             "the cable must touch the flanks of the thread, not ride on its crests (Neal 2015, eq 4.18)");
+  add_margin(margins, "wrap spacing", capstan.cable.coated_diameter,
+             capstan.lead * std::cos(capstan_->cable_angle), "m", "neighbouring wraps must not touch");
+  add_margin(margins, "centre distance", capstan_->min_centre_distance, capstan.centre_distance, "m",
+             "the pulleys with their cable must not touch");
+  add_margin(margins, "sector range", joint_range_.width(), capstan_->dimensions.output_range, "rad",
+             "the sector must carry cable for the whole range of the joint");
+  add_margin(
+      margins, "motor radial load", loads.bearing_radial, motor.max_radial_load, "N",
       "the cable's pull under preload and peak torque must stay within the motor's bearings (Neal 2015, eq "
       "4.42)");
-  add(margins, "motor axial load", loads.bearing_axial, motor.max_axial_load, "N",
+  add_margin(
+      margins, "motor axial load", loads.bearing_axial, motor.max_axial_load, "N",
       "the cable's axial pull under peak torque must stay within the motor's bearings (Neal 2015, eq 4.41)");
   if (preloader_) {
-    add(margins, "flexure stress", preloader_->bending_stress(capstan.preload),
-        description_.preloader->material.yield_strength, "Pa",
-        "the preloader must not yield under the preload (Neal 2015, eq 4.63)");
+    add_margin(margins, "flexure stress", preloader_->bending_stress(capstan.preload),
+               description_.preloader->material.yield_strength, "Pa",
+               "the preloader must not yield under the preload (Neal 2015, eq 4.63)");
   }
 }
 
@@ -315,24 +310,25 @@ std::vector<Margin> Drive::margins() const {
   const Motor& motor = description_.motor;
   const Amplifier& amplifier = description_.amplifier;
   std::vector<Margin> margins;
-  add(margins, "continuous current", motor.nominal_current, amplifier.continuous_current, "A",
-      "the amplifier must hold the motor's nominal current");
-  add(margins, "peak current", motor.nominal_torque * description_.peak_factor / motor.torque_constant,
-      amplifier.max_current, "A", "the amplifier must give the current of the peak torque");
+  add_margin(margins, "continuous current", motor.nominal_current, amplifier.continuous_current, "A",
+             "the amplifier must hold the motor's nominal current");
+  add_margin(margins, "peak current", motor.nominal_torque * description_.peak_factor / motor.torque_constant,
+             amplifier.max_current, "A", "the amplifier must give the current of the peak torque");
   if (thermal_) {
-    add(margins, "winding heat", motor.nominal_torque / motor.torque_constant, thermal_->continuous_current(),
+    add_margin(
+        margins, "winding heat", motor.nominal_torque / motor.torque_constant, thermal_->continuous_current(),
         "A", "the current of the nominal torque must not overheat the winding in a room of 25 degrees Celsius");
   }
-  add(margins, "supply voltage", description_.supply_voltage, amplifier.max_supply_voltage, "V",
-      "the supply must not exceed what the amplifier takes");
-  add(margins, "least supply voltage", amplifier.min_supply_voltage, description_.supply_voltage, "V",
-      "the supply must suffice for the amplifier");
-  add(margins, "encoder frequency",
-      speed().unloaded * ratio_ / (2.0 * pi) * description_.encoder.pulses_per_turn,
-      description_.encoder.max_frequency, "Hz",
-      "the encoder must follow the fastest the motor can turn at the available voltage, unloaded");
-  add(margins, "motor speed", speed().unloaded * ratio_, motor.max_speed, "rad/s",
-      "the motor must permit the fastest that it can turn at the available voltage, unloaded");
+  add_margin(margins, "supply voltage", description_.supply_voltage, amplifier.max_supply_voltage, "V",
+             "the supply must not exceed what the amplifier takes");
+  add_margin(margins, "least supply voltage", amplifier.min_supply_voltage, description_.supply_voltage, "V",
+             "the supply must suffice for the amplifier");
+  add_margin(margins, "encoder frequency",
+             speed().unloaded * ratio_ / (2.0 * pi) * description_.encoder.pulses_per_turn,
+             description_.encoder.max_frequency, "Hz",
+             "the encoder must follow the fastest the motor can turn at the available voltage, unloaded");
+  add_margin(margins, "motor speed", speed().unloaded * ratio_, motor.max_speed, "rad/s",
+             "the motor must permit the fastest that it can turn at the available voltage, unloaded");
   if (gearhead() != nullptr) add_gearhead_margins(margins);
   if (capstan_) {
     add_capstan_margins(margins);

@@ -5,7 +5,12 @@
 #include <limits>
 #include <string>
 
+#include "zwidth/actuation/internal/margin.h"
+
 namespace zwidth {
+
+using internal::add_margin;
+
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -44,17 +49,6 @@ PressureAllocation allocation_of(const PneumaticDriveDescription& description) {
 double angle_per_voltage_of(const PneumaticDriveDescription& description) {
   if (!description.potentiometer || !(description.sensor_voltage > 0.0)) return kNone;
   return description.potentiometer->electrical_angle / description.sensor_voltage;
-}
-
-// Adds the margin unless one side is not known.
-void add(std::vector<Margin>& margins, const char* name, double demand, double capability, const char* unit,
-         const char* rule) {
-  if (!std::isfinite(demand) || !std::isfinite(capability)) return;
-  constexpr double kRounding = 1e-9;
-  const std::optional<double> utilisation =
-      capability > 0.0 ? std::optional(demand / capability) : std::nullopt;
-  margins.push_back(
-      {name, demand, capability, unit, utilisation, demand <= capability * (1.0 + kRounding), rule});
 }
 
 }  // namespace
@@ -199,34 +193,34 @@ std::vector<Margin> PneumaticDrive::margins() const {
       least = std::min(least, std::abs(lever(joint)));
     }
     if (!arm_->keeps_direction(joint_range_)) least = 0.0;
-    add(margins, "stroke", longest - shortest, cylinder.stroke, "m",
-        "the joint's range must not need more than the stroke");
-    add(margins, "stroke within the cylinder", cylinder.stroke, mount.retracted_length, "m",
-        "a cylinder with the rod in is longer than its stroke");
-    add(margins, "shortest length", mount.retracted_length, shortest, "m",
-        "the cylinder must not be shorter than it is with the rod in");
-    add(margins, "greatest length", longest, mount.retracted_length + cylinder.stroke, "m",
-        "the cylinder must not be longer than it is with the rod out");
-    add(margins, "dead point", kDeadPointLever, least, "m",
-        "the lever must not vanish within the joint's range (|d'| < 1 nm/rad)");
+    add_margin(margins, "stroke", longest - shortest, cylinder.stroke, "m",
+               "the joint's range must not need more than the stroke");
+    add_margin(margins, "stroke within the cylinder", cylinder.stroke, mount.retracted_length, "m",
+               "a cylinder with the rod in is longer than its stroke");
+    add_margin(margins, "shortest length", mount.retracted_length, shortest, "m",
+               "the cylinder must not be shorter than it is with the rod in");
+    add_margin(margins, "greatest length", longest, mount.retracted_length + cylinder.stroke, "m",
+               "the cylinder must not be longer than it is with the rod out");
+    add_margin(margins, "dead point", kDeadPointLever, least, "m",
+               "the lever must not vanish within the joint's range (|d'| < 1 nm/rad)");
   } else {
-    add(margins, "stroke", joint_range_.width(), cylinder.stroke, "m",
-        "the joint's range must not be more than the stroke");
+    add_margin(margins, "stroke", joint_range_.width(), cylinder.stroke, "m",
+               "the joint's range must not be more than the stroke");
   }
-  add(margins, "supply pressure", description_.supply_pressure, regulator.max_supply_pressure, "Pa",
-      "the regulators must stand the supply pressure");
-  add(margins, "regulator pressure", usable_pressure_, cylinder.max_pressure, "Pa",
-      "the cylinder must stand the highest pressure used");
-  add(margins, "bias pressure", description_.bias_pressure, usable_pressure_, "Pa",
-      "the bias must leave pressure to work with");
-  add(margins, "least pressure", regulator.min_pressure, description_.bias_pressure, "Pa",
-      "the bias must not be below what the regulators can hold");
+  add_margin(margins, "supply pressure", description_.supply_pressure, regulator.max_supply_pressure, "Pa",
+             "the regulators must stand the supply pressure");
+  add_margin(margins, "regulator pressure", usable_pressure_, cylinder.max_pressure, "Pa",
+             "the cylinder must stand the highest pressure used");
+  add_margin(margins, "bias pressure", description_.bias_pressure, usable_pressure_, "Pa",
+             "the bias must leave pressure to work with");
+  add_margin(margins, "least pressure", regulator.min_pressure, description_.bias_pressure, "Pa",
+             "the bias must not be below what the regulators can hold");
   if (const auto& sensor = description_.potentiometer; sensor && arm_) {
-    add(margins, "potentiometer angle", joint_range_.width(), sensor->electrical_angle, "rad",
-        "the joint's range must not be more than the potentiometer's");
+    add_margin(margins, "potentiometer angle", joint_range_.width(), sensor->electrical_angle, "rad",
+               "the joint's range must not be more than the potentiometer's");
     if (description_.sensor_voltage > 0.0) {
-      add(margins, "potentiometer voltage", description_.sensor_voltage, sensor->max_voltage, "V",
-          "the potentiometer must stand its voltage");
+      add_margin(margins, "potentiometer voltage", description_.sensor_voltage, sensor->max_voltage, "V",
+                 "the potentiometer must stand its voltage");
     }
   }
   return margins;

@@ -95,7 +95,8 @@ Solution solve_forward(const Mechanism& mechanism, const ActiveVector& active,
 
 /// The posture that brings the tool to a pose, nearest to the start (closed form: the device's own branch).
 /// A mechanism that only translates ignores the rotation. A pose that only another assembly mode reaches is
-/// unreachable; with a start the posture follows that, and its mode is not looked at. REQUIRES: all finite.
+/// unreachable, unless a joint would be beyond its range anyway: that is joint_limit; with a start the posture
+/// follows that, and its mode is not looked at. REQUIRES: all finite.
 Solution solve_inverse(const Mechanism& mechanism, const Pose& tool, const SolveOptions& options = {});
 
 /// Every posture that brings the tool to a pose, one per combination of the legs' roots, other assembly modes

@@ -6,6 +6,9 @@
 
 #include "support/small_arms.h"
 
+#include "zwidth/analysis/posture_sweep.h"
+#include "zwidth/mechanism/srs_arm.h"
+
 namespace zwidth {
 namespace {
 
@@ -63,6 +66,43 @@ TEST(Reach, HoldsEveryPostureAndNoPointBeyond) {
     }
   }
   EXPECT_EQ(beyond, 0);
+}
+
+// The map by drawn postures and Newton's method against the exact test of one point in closed form.
+TEST(Reach, AgreesWithTheClosedFormOfASphericalShoulder) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const std::array<Interval, 4> ranges = {Interval{-90.0 * kDegree, 90.0 * kDegree},
+                                          {30.0 * kDegree, 120.0 * kDegree},
+                                          {-60.0 * kDegree, 60.0 * kDegree},
+                                          {45.0 * kDegree, 135.0 * kDegree}};
+  for (const auto& [upper, fore] : {std::pair{0.25, 0.25}, {0.3, 0.2}, {0.15, 0.4}}) {
+    const SrsReach exact({.upper_arm = upper, .forearm = fore}, ranges);
+    const Mechanism arm(test::seven_joint_arm(upper, fore));
+    for (int i = 0; i < 20'000; ++i) {
+      const Solution drawn = solve_forward(arm, spread_posture(arm, i));
+      ASSERT_TRUE(exact.contains(drawn.posture->tool().position)) << i;
+    }
+    const ReachMap map = reach_map(arm, {.samples = 500'000});
+    std::int64_t inside = 0, missed = 0, beyond = 0;
+    for (std::int64_t i = map.first[0]; i < map.first[0] + map.count[0]; ++i) {
+      for (std::int64_t j = map.first[1]; j < map.first[1] + map.count[1]; ++j) {
+        for (std::int64_t k = map.first[2]; k < map.first[2] + map.count[2]; ++k) {
+          const Vector3 middle =
+              map.spacing *
+              Vector3(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5, static_cast<double>(k) + 0.5);
+          const bool reached = exact.contains(middle);
+          inside += reached ? 1 : 0;
+          missed += reached && !map.at(i, j, k) ? 1 : 0;
+          beyond += !reached && map.at(i, j, k) ? 1 : 0;
+        }
+      }
+    }
+    EXPECT_GT(inside, 5000);
+    // Middles within the map's tolerance of a thousandth of a cube may count as reached; misses are those that
+    // Newton's method finds no way to.
+    EXPECT_LE(beyond, inside / 500) << upper;
+    EXPECT_LE(missed, inside / 500) << upper;
+  }
 }
 
 TEST(Reach, RefusesWhatIsNoArm) {

@@ -2,6 +2,8 @@
 
 #include "quantities.h"
 
+#include "zwidth/analysis/posture_sweep.h"
+#include "zwidth/analysis/reach.h"
 #include "zwidth/mechanism/srs_arm.h"
 
 namespace zwidth::reference {
@@ -64,9 +66,49 @@ Values row_by_row(const Matrix& m) {
   return values;
 }
 
+// The arm up to its wrist point; limits not given are those that its source means. A limit of no width, and
+// theta3 where `lock_theta3`, fixes its joint.
+Mechanism positioning_stage(const Inputs& in, bool lock_theta3) {
+  constexpr double kDegree = std::numbers::pi / 180.0, kQuarter = 0.5 * std::numbers::pi;
+  const SrsLengths length = lengths(in);
+  const double alpha[] = {-kQuarter, kQuarter, -kQuarter, kQuarter};
+  const Interval usual[] = {{-90.0, 90.0}, {30.0, 120.0}, {-60.0, 60.0}, {45.0, 135.0}};
+  SerialDescription arm;
+  for (int i = 0; i < 4; ++i) {
+    const std::string key = "theta" + std::to_string(i + 1) + "_deg";
+    Interval range = usual[i];
+    if (in.has(key)) range = {in.list(key).at(0), in.list(key).at(1)};
+    if (i == 2 && lock_theta3) range = {0.0, 0.0};
+    SerialJointDescription row{.name = key, .d = i == 2 ? length.upper_arm : 0.0, .alpha = alpha[i]};
+    if (range.width() > 0.0) {
+      row.range = {range.min * kDegree, range.max * kDegree};
+      row.home = row.range.middle();
+    } else {
+      row.type = SerialJointType::fixed;
+      row.theta = range.min * kDegree;
+    }
+    arm.joints.push_back(row);
+  }
+  arm.joints.push_back({.name = "wrist", .type = SerialJointType::fixed, .d = length.forearm});
+  Description description;
+  description.mechanism = arm;
+  return Mechanism(description);
+}
+
 }  // namespace
 
 void add_arm(Quantities& q) {
+  q["workspace_volume"] = [](const Inputs& in) {
+    return Values{reachable_volume(positioning_stage(in, false), {.samples = 4'000'000}).value};
+  };
+  q["workspace_gain_of_theta3"] = [](const Inputs& in) {
+    return Values{
+        compare_reach(positioning_stage(in, false), positioning_stage(in, true), {.samples = 2'000'000})
+            .gain()};
+  };
+  q["maximum_reach"] = [](const Inputs& in) {
+    return Values{farthest_from(positioning_stage(in, false), Vector3::Zero()).distance};
+  };
   q["wrist_position"] = [](const Inputs& in) {
     return row_by_row(srs_forward(lengths(in), angles(in)).wrist.position);
   };

@@ -9,6 +9,7 @@
 
 #include "zwidth/actuation/drive_problems.h"
 #include "zwidth/description/read.h"
+#include "zwidth/mechanism/beam_link.h"
 
 namespace zwidth {
 
@@ -40,7 +41,7 @@ const Catalogue& catalogue() {
 }
 
 Description read_device(const std::string& device, const std::vector<std::string>& overrides) {
-  static constexpr DescriptionCheck kChecks[] = {drive_problems};
+  static constexpr DescriptionCheck kChecks[] = {drive_problems, beam_problems};
   return read_description(device, overrides, catalogue(), kChecks);
 }
 

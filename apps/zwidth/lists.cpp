@@ -101,6 +101,13 @@ std::vector<Column> overview<Material>() {
 }
 
 template <>
+std::vector<Column> overview<Lamina>() {
+  return {{"E1 GPa", "longitudinal_modulus", 1e-9},
+          {"E2 GPa", "transverse_modulus", 1e-9},
+          {"G12 GPa", "shear_modulus", 1e-9},
+          {"density kg/m³", "density", 1.0}};
+}
+template <>
 std::vector<Column> overview<Cylinder>() {
   return {{"mm stroke", "stroke", 1e3},
           {"mm² rear", "rear_area", 1e6},
@@ -122,10 +129,11 @@ class Parts {
   Parts(const PartsArguments& arguments, const Terminal& terminal) : arguments_(arguments), sheet_(terminal) {}
 
   int run() {
-    const std::vector<std::string> kinds = {"motor",   "gearhead", "encoder",  "amplifier", "cable",
-                                            "bearing", "material", "cylinder", "regulator", "potentiometer"};
+    const std::vector<std::string> kinds = {"motor",    "gearhead",  "encoder",      "amplifier",
+                                            "cable",    "bearing",   "material",     "lamina",
+                                            "cylinder", "regulator", "potentiometer"};
     std::string kind = arguments_.kind;
-    if (kind.ends_with('s')) kind.pop_back();
+    if (kind.ends_with('s') || kind == "laminae") kind.pop_back();
     if (!kind.empty() && std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
       // A part's name alone says its kind too.
       if (!arguments_.name.empty())
@@ -143,6 +151,7 @@ class Parts {
     each<Cable>();
     each<Bearing>();
     each<Material>();
+    each<Lamina>();
     each<Cylinder>();
     each<Regulator>();
     each<Potentiometer>();

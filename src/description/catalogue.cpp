@@ -95,6 +95,7 @@ Catalogue Catalogue::load(const fs::path& directory) {
   catalogue.cables_ = load_parts<Cable>(parts / "cables.toml", problems);
   catalogue.bearings_ = load_parts<Bearing>(parts / "bearings.toml", problems);
   catalogue.materials_ = load_parts<Material>(parts / "materials.toml", problems);
+  catalogue.laminae_ = load_parts<Lamina>(parts / "laminae.toml", problems);
   catalogue.cylinders_ = load_parts<Cylinder>(parts / "cylinders.toml", problems);
   catalogue.regulators_ = load_parts<Regulator>(parts / "regulators.toml", problems);
   catalogue.potentiometers_ = load_parts<Potentiometer>(parts / "potentiometers.toml", problems);
@@ -132,6 +133,10 @@ const std::vector<Material>& Catalogue::all<Material>() const {
   return materials_;
 }
 template <>
+const std::vector<Lamina>& Catalogue::all<Lamina>() const {
+  return laminae_;
+}
+template <>
 const std::vector<Cylinder>& Catalogue::all<Cylinder>() const {
   return cylinders_;
 }
@@ -158,6 +163,7 @@ template const Amplifier* Catalogue::find<Amplifier>(std::string_view) const;
 template const Cable* Catalogue::find<Cable>(std::string_view) const;
 template const Bearing* Catalogue::find<Bearing>(std::string_view) const;
 template const Material* Catalogue::find<Material>(std::string_view) const;
+template const Lamina* Catalogue::find<Lamina>(std::string_view) const;
 template const Cylinder* Catalogue::find<Cylinder>(std::string_view) const;
 template const Regulator* Catalogue::find<Regulator>(std::string_view) const;
 template const Potentiometer* Catalogue::find<Potentiometer>(std::string_view) const;

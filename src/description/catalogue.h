@@ -29,13 +29,13 @@ class Catalogue {
   Catalogue() = default;
 
   /// Reads
-  /// DIRECTORY/parts/{motors,gearheads,encoders,amplifiers,cables,bearings,materials,cylinders,regulators,
-  /// potentiometers}.toml and lists DIRECTORY/devices/*.toml. Throws DescriptionError with everything that is
-  /// wrong in the parts files.
+  /// DIRECTORY/parts/{motors,gearheads,encoders,amplifiers,cables,bearings,materials,laminae,cylinders,
+  /// regulators,potentiometers}.toml and lists DIRECTORY/devices/*.toml. Throws DescriptionError with
+  /// everything that is wrong in the parts files.
   static Catalogue load(const std::filesystem::path& directory = default_data_directory());
 
-  /// Parts of one kind (Motor, Gearhead, Encoder, Amplifier, Cable, Bearing, Material, Cylinder, Regulator,
-  /// Potentiometer), in the order of their file.
+  /// Parts of one kind (Motor, Gearhead, Encoder, Amplifier, Cable, Bearing, Material, Lamina, Cylinder,
+  /// Regulator, Potentiometer), in the order of their file.
   template <class Part>
   const std::vector<Part>& all() const;
   /// Null if there is no such part.
@@ -54,6 +54,7 @@ class Catalogue {
   std::vector<Cable> cables_;
   std::vector<Bearing> bearings_;
   std::vector<Material> materials_;
+  std::vector<Lamina> laminae_;
   std::vector<Cylinder> cylinders_;
   std::vector<Regulator> regulators_;
   std::vector<Potentiometer> potentiometers_;

@@ -171,7 +171,61 @@ struct LegsDescription {
 using MechanismDescription =
     std::variant<DeltaDescription, FiveBarDescription, RCubeDescription, SerialDescription, LegsDescription>;
 
-/// A rigid body fixed to a link or to the platform.
+/// How the moduli of a wall follow from its plies.
+enum class LaminateRule {
+  lamination,  ///< all plies share their strains (classical lamination theory)
+  mean,        ///< mean of the plies' moduli (Görgülü 2018, eq 5.179-5.181)
+};
+
+/// Equal plies at one angle.
+struct PlyDescription {
+  int count = 0;
+  double angle = 0.0;  ///< of the fibres from the link's axis [rad]
+
+  bool operator==(const PlyDescription&) const = default;
+};
+
+/// A wall of plies, whose order does not matter where it bends as part of a tube.
+struct LaminateDescription {
+  Lamina lamina;
+  std::vector<PlyDescription> plies;
+  LaminateRule rule = LaminateRule::lamination;
+
+  bool operator==(const LaminateDescription&) const = default;
+};
+
+using WallDescription = std::variant<Material, LaminateDescription>;
+
+/// Round tube, or round bar without an inner diameter.
+struct TubeDescription {
+  double outer_diameter = 0.0;  ///< [m]
+  double inner_diameter = 0.0;  ///< [m]
+  WallDescription wall = {};
+  std::string source = {};
+  Sources sources = {};
+
+  bool operator==(const TubeDescription&) const = default;
+};
+
+/// Solid rectangular bar.
+struct BarDescription {
+  double width = 0.0;   ///< [m]
+  double height = 0.0;  ///< [m]
+  /// Direction of the width, at the leg's zero posture, of any length; what of it lies along the link does not
+  /// count. Zero: the axis of the joint that moves the link.
+  Vector3 width_along = Vector3::Zero();
+  WallDescription wall = {};
+  std::string source = {};
+  Sources sources = {};
+
+  bool operator==(const BarDescription&) const = default;
+};
+
+/// A straight, uniform link. It lies between the points of the joint that moves it and of the next joint, or
+/// the leg's tip, and gives the link mass and elasticity. Links without one are rigid.
+using BeamDescription = std::variant<TubeDescription, BarDescription>;
+
+/// A rigid body fixed to a link or to the platform, or the link itself as a beam.
 ///
 /// `on` names the link: "platform", or "LEG/JOINT" for the link that this joint moves. A delta also knows
 /// "upper_arm" and "forearm", which stand for all three legs; their frame has its origin in the link's inner
@@ -186,8 +240,9 @@ struct BodyDescription {
   Vector3 pivot = Vector3::Zero();   ///< where it hangs on `on`, at the leg's zero posture [m]; with turns_with
   double mass = 0.0;                 ///< [kg]
   Vector3 centre = Vector3::Zero();  ///< centre of mass, at the leg's zero posture [m]
-  Matrix3 inertia = Matrix3::Zero();  ///< about the centre of mass [kg m^2]
-  std::string source;                 ///< where the values come from; "chosen: ..." where no source gives them
+  Matrix3 inertia = Matrix3::Zero();         ///< about the centre of mass [kg m^2]
+  std::optional<BeamDescription> beam = {};  ///< instead of mass, centre and inertia, which follow from it
+  std::string source;  ///< where the values come from; "chosen: ..." where no source gives them
   Sources sources = {};
 
   bool operator==(const BodyDescription&) const = default;

@@ -162,7 +162,61 @@ MechanismDescription read_mechanism(TableReader& device) {
 
 // --------------------------------------------------------------------------------------------------- bodies
 
-BodyDescription read_body(TableReader& table) {
+// The material of a link, or its laminate.
+WallDescription read_wall(TableReader& table, const Catalogue& catalogue) {
+  if (!table.has("laminate")) return read_part<Material>(table, "material", catalogue);
+  if (table.has("material")) table.report("material", "stands beside a laminate", "give one of the two");
+  LaminateDescription laminate;
+  std::optional<TableReader> inner = table.table(
+      "laminate", Need::required, "write laminate = { lamina = \"...\", plies = [{ count = 4 }, ...] }");
+  if (!inner) return laminate;
+  laminate.lamina = read_part<Lamina>(*inner, "lamina", catalogue);
+  if (const auto rule = inner->choice<LaminateRule>("rule", laminate_rule_names(), Need::optional)) {
+    laminate.rule = *rule;
+  }
+  for (TableReader& one : inner->tables("plies")) {
+    PlyDescription ply;
+    one.read(ply);
+    one.finish();
+    laminate.plies.push_back(ply);
+  }
+  inner->finish();
+  return laminate;
+}
+
+template <class Beam>
+Beam read_beam(TableReader& table, const Catalogue& catalogue) {
+  Beam beam;
+  table.read(beam);
+  if constexpr (std::is_same_v<Beam, BarDescription>) {
+    const std::string_view advice = "give the direction of the width at the zero posture, such as [0, 1, 0]";
+    if (const auto along = table.vector("width_along", Dimension::number, Need::optional, advice)) {
+      beam.width_along = *along;
+    }
+  }
+  beam.wall = read_wall(table, catalogue);
+  table.read_sources(beam.source, beam.sources, Need::optional);
+  table.finish();
+  return beam;
+}
+
+// `tube` or `bar`; nothing if the body has neither.
+std::optional<BeamDescription> read_beam(TableReader& body, const Catalogue& catalogue) {
+  std::optional<BeamDescription> beam;
+  const bool both = body.has("tube") && body.has("bar");
+  if (both) body.report("bar", "stands beside a tube", "give the link one of the two");
+  const std::string_view advice = "write tube = { outer_diameter = \"20 mm\", material = \"steel-s235\" }, say";
+  if (body.has("tube")) {
+    if (auto tube = body.table("tube", Need::required, advice)) {
+      beam = read_beam<TubeDescription>(*tube, catalogue);
+    }
+  } else if (body.has("bar")) {
+    if (auto bar = body.table("bar", Need::required, advice)) beam = read_beam<BarDescription>(*bar, catalogue);
+  }
+  return beam;
+}
+
+BodyDescription read_body(TableReader& table, const Catalogue& catalogue) {
   BodyDescription body;
   body.on = table.text("on", Need::required, "name the link: \"platform\", \"LEG/JOINT\", ...").value_or("");
   body.turns_with = table.text("turns_with", Need::optional).value_or("");
@@ -175,8 +229,17 @@ BodyDescription read_body(TableReader& table) {
       table.report("pivot", "means nothing without turns_with",
                    "name the link that turns the body, or leave it out");
   }
-  body.mass =
-      table.quantity("mass", Dimension::mass, Need::required, "give the mass, such as \"80 g\"").value_or(0.0);
+  const bool is_beam = table.has("tube") || table.has("bar");
+  body.beam = read_beam(table, catalogue);
+  for (const char* key : {"mass", "centre", "inertia"}) {
+    if (is_beam && table.has(key))
+      table.report(key, "follows from the section and the material",
+                   "leave it out; what the link carries beside is a body of its own");
+  }
+  body.mass = table
+                  .quantity("mass", Dimension::mass, is_beam ? Need::optional : Need::required,
+                            "give the mass, such as \"80 g\"")
+                  .value_or(0.0);
   const std::string_view centre_advice = "give the centre of mass, such as [\"40 mm\", 0, 0]";
   if (const auto centre = table.vector("centre", Dimension::length, Need::optional, centre_advice)) {
     body.centre = *centre;
@@ -377,7 +440,7 @@ Description read_device_tables(Input& input, const Catalogue& catalogue) {
     device->finish();
   }
   description.mechanism = read_mechanism(file);
-  for (TableReader& body : file.tables("body")) description.bodies.push_back(read_body(body));
+  for (TableReader& body : file.tables("body")) description.bodies.push_back(read_body(body, catalogue));
   for (TableReader& drive : file.tables("drive")) {
     // What `validate` says of a drive by its place in the description belongs to its place in the file.
     if (drive.has("cylinder")) {

@@ -164,6 +164,16 @@ const std::vector<std::pair<std::string, LoadKind>>& load_kind_names() {
   return names;
 }
 
+const std::vector<std::pair<std::string, LaminateRule>>& laminate_rule_names() {
+  static const std::vector<std::pair<std::string, LaminateRule>> names = {
+      {"lamination", LaminateRule::lamination}, {"mean", LaminateRule::mean}};
+  return names;
+}
+
+std::string to_string(LaminateRule rule) {
+  return laminate_rule_names()[static_cast<std::size_t>(rule)].first;
+}
+
 std::string to_string(MomentFrame frame) {
   return moment_frame_names()[static_cast<std::size_t>(frame)].first;
 }

@@ -37,6 +37,9 @@ std::string to_string(ArmCylinderLayout layout);
 /// "base", "tool", "published"; "continuous", "peak": as files call them.
 const std::vector<std::pair<std::string, MomentFrame>>& moment_frame_names();
 const std::vector<std::pair<std::string, LoadKind>>& load_kind_names();
+/// "lamination", "mean": every rule for laminates as files call it.
+const std::vector<std::pair<std::string, LaminateRule>>& laminate_rule_names();
+std::string to_string(LaminateRule rule);
 std::string to_string(MomentFrame frame);
 std::string to_string(LoadKind kind);
 

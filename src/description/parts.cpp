@@ -54,6 +54,9 @@ bool Bearing::operator==(const Bearing& other) const {
 bool Material::operator==(const Material& other) const {
   return equal(*this, other);
 }
+bool Lamina::operator==(const Lamina& other) const {
+  return equal(*this, other);
+}
 bool Cylinder::operator==(const Cylinder& other) const {
   return equal(*this, other);
 }
@@ -91,6 +94,10 @@ std::string_view part_kind<Bearing>() {
 template <>
 std::string_view part_kind<Material>() {
   return "material";
+}
+template <>
+std::string_view part_kind<Lamina>() {
+  return "lamina";
 }
 template <>
 std::string_view part_kind<Cylinder>() {
@@ -166,6 +173,7 @@ ZWIDTH_INSTANTIATE(Amplifier)
 ZWIDTH_INSTANTIATE(Cable)
 ZWIDTH_INSTANTIATE(Bearing)
 ZWIDTH_INSTANTIATE(Material)
+ZWIDTH_INSTANTIATE(Lamina)
 ZWIDTH_INSTANTIATE(Cylinder)
 ZWIDTH_INSTANTIATE(Regulator)
 ZWIDTH_INSTANTIATE(Potentiometer)

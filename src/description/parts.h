@@ -144,6 +144,19 @@ struct Material {
   bool operator==(const Material& other) const;  ///< values not given are equal
 };
 
+/// Parallel fibres in a matrix: what one ply is made of. Axis 1 lies along the fibres, axis 2 across them.
+struct Lamina {
+  PartInfo info;
+  double longitudinal_modulus = 0.0;  ///< E1 [Pa]
+  double transverse_modulus = 0.0;    ///< E2 [Pa]
+  double shear_modulus = 0.0;         ///< G12 [Pa]
+  double poisson_ratio = 0.0;         ///< nu12 [-]
+  double density = 0.0;               ///< [kg/m^3]
+  double ply_thickness = kNotGiven;   ///< [m]
+
+  bool operator==(const Lamina& other) const;  ///< values not given are equal
+};
+
 /// A double-acting air cylinder with one rod.
 struct Cylinder {
   PartInfo info;

@@ -89,6 +89,17 @@ KeyReference part_key(const char* kind, const char* example) {
 
 namespace {
 
+std::vector<KeyReference> with_wall(std::vector<KeyReference> keys) {
+  keys.push_back(part_key("material", "\"steel-s235\""));
+  keys.back().left_out = "required without laminate";
+  keys.push_back(
+      {"laminate", "table", "no plies", "instead of material", "plies of fibres; see `laminate`", ""});
+  return keys;
+}
+std::vector<KeyReference> wall_keys() {
+  return with_wall({});
+}
+
 TableReference serial_joint_table() {
   TableReference joint{.name = "serial-joint",
                        .keys = {{"name", "string", "required", "differs from joint to joint, has no '/'",
@@ -188,7 +199,8 @@ std::vector<TableReference> file_reference() {
             "\"leg1/theta1\""},
            {"pivot", "[x, y, z] length [m]", "required with turns_with", "must be finite",
             "that pin, at the leg's zero posture, in the base frame", "[0, 0, \"60 mm\"]"},
-           {"mass", "mass [kg]", "required", "must be from 0 to 1000 kg", "mass", "\"80 g\""},
+           {"mass", "mass [kg]", "required without tube or bar", "must be from 0 to 1000 kg", "mass",
+            "\"80 g\""},
            {"centre", "[x, y, z] length [m]", "[0, 0, 0]", "must be finite",
             "centre of mass at the leg's zero posture, in the base frame; of the platform in its frame; of "
             "upper_arm and forearm from the link's inner joint, x outwards, z up; of the links of an R-CUBE "
@@ -197,7 +209,26 @@ std::vector<TableReference> file_reference() {
             "[\"40 mm\", 0, 0]"},
            {"inertia", "[xx, yy, zz], [xx, yy, zz, xy, xz, yz] or three rows, moment of inertia [kg m^2]", "0",
             "of a possible body: symmetric, positive, no principal moment above the sum of the others",
-            "about the centre of mass", "[0, \"430 g cm^2\", \"430 g cm^2\"]"}}),
+            "about the centre of mass", "[0, \"430 g cm^2\", \"430 g cm^2\"]"},
+           {"tube", "table", "the body is rigid", "instead of mass, centre and inertia; not on the platform",
+            "the link itself as a tube or round bar; see `tube`", ""},
+           {"bar", "table", "the body is rigid", "instead of mass, centre and inertia; not on the platform",
+            "the link itself as a rectangular bar; see `bar`", ""}}),
+      table<TubeDescription>("tube", {}, wall_keys()),
+      table<BarDescription>(
+          "bar", {},
+          with_wall({{"width_along", "[x, y, z] number", "the axis of the link's joint", "not along the link",
+                      "direction of the width, at the leg's zero posture, in the base frame", "[0, 1, 0]"}})),
+      {.name = "laminate",
+       .keys =
+           {part_key("lamina", "\"m55j-epoxy\""),
+            {"plies", "array of tables", "required", "at least one ply; see `ply`", "the plies of the wall",
+             "[{ count = 2 }, { count = 6, angle = \"90 deg\" }]"},
+            {"rule", "\"lamination\" or \"mean\"", "\"lamination\"", "",
+             "how the wall's moduli follow: from strains that all plies share, or as the mean of the plies' "
+             "moduli, the rule of Görgülü 2018",
+             "\"mean\""}}},
+      {.name = "ply", .keys = references_of<PlyDescription>()},
       table<DriveDescription>(
           "drive",
           {{"joints", "\"all\", a name or a list of names", "\"all\"", "active joints, each with one drive",
@@ -260,6 +291,7 @@ std::vector<TableReference> file_reference() {
       part_table<Cable>("cable"),
       part_table<Bearing>("bearing"),
       part_table<Material>("material"),
+      part_table<Lamina>("lamina"),
       part_table<Cylinder>("cylinder"),
       part_table<Regulator>("regulator"),
       part_table<Potentiometer>("potentiometer"),

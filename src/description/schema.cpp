@@ -28,6 +28,9 @@ constexpr Bounds kSign{.min = -1.0, .max = 1.0};      // 0 is refused by `valida
 constexpr Bounds kUpToTurn{.min = 0.0, .max = 2.0 * kHalfTurn};
 constexpr Bounds kTurn{.min = 0.0, .max = 2.0 * kHalfTurn, .above_min = true};
 constexpr Bounds kNotBelowVacuum{.min = -101325.0};
+constexpr Bounds kBore{.min = 0.0, .max = 1.0};
+constexpr Bounds kPlies{.min = 0.0, .max = 1000.0};
+constexpr Bounds kLaminaPoisson{.min = -10.0, .max = 10.0};
 constexpr Bounds kPoisson{.min = -1.0, .max = 0.5, .above_min = true};
 
 bool bare_key(std::string_view key) {
@@ -222,6 +225,58 @@ std::span<const Field<Material>> fields<Material>() {
       {"density", &Material::density, density, kPositive, required, "density", "\"2700 kg/m^3\""},
       {"yield_strength", &Material::yield_strength, pressure, kPositive, optional, "0.2 % proof stress",
        "\"276 MPa\""},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<Lamina>> fields<Lamina>() {
+  static const Field<Lamina> list[] = {
+      {"longitudinal_modulus", &Lamina::longitudinal_modulus, pressure, kPositive, required,
+       "Young's modulus along the fibres", "\"300 GPa\""},
+      {"transverse_modulus", &Lamina::transverse_modulus, pressure, kPositive, required,
+       "Young's modulus across the fibres", "\"12 GPa\""},
+      {"shear_modulus", &Lamina::shear_modulus, pressure, kPositive, required, "shear modulus in the plane",
+       "\"5 GPa\""},
+      // Its square is less than longitudinal over transverse modulus, which `validate` sees to.
+      {"poisson_ratio", &Lamina::poisson_ratio, number, kLaminaPoisson, required,
+       "contraction across the fibres per strain along them", "0.3"},
+      {"density", &Lamina::density, density, kPositive, required, "density", "\"1600 kg/m^3\""},
+      {"ply_thickness", &Lamina::ply_thickness, length, kSmallLength, optional, "thickness of one ply",
+       "\"0.15 mm\""},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<TubeDescription>> fields<TubeDescription>() {
+  using Tube = TubeDescription;
+  static const Field<Tube> list[] = {
+      {"outer_diameter", &Tube::outer_diameter, length, kSmallLength, required, "outer diameter", "\"20 mm\""},
+      {"inner_diameter", &Tube::inner_diameter, length, kBore, optional,
+       "inner diameter, less than the outer one; 0 for a solid bar", "\"16 mm\""},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<BarDescription>> fields<BarDescription>() {
+  using Bar = BarDescription;
+  static const Field<Bar> list[] = {
+      {"width", &Bar::width, length, kSmallLength, required, "width of the section", "\"10 mm\""},
+      {"height", &Bar::height, length, kSmallLength, required, "height of the section, across the width",
+       "\"20 mm\""},
+  };
+  return list;
+}
+
+template <>
+std::span<const Field<PlyDescription>> fields<PlyDescription>() {
+  using Ply = PlyDescription;
+  static const Field<Ply> list[] = {
+      {"count", &Ply::count, number, kPlies, required, "number of plies at this angle", "4"},
+      {"angle", &Ply::angle, angle, kWithinHalfTurn, optional, "angle of the fibres from the link's axis",
+       "\"45 deg\""},
   };
   return list;
 }

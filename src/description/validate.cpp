@@ -407,7 +407,72 @@ class Validator {
     }
   }
 
+  // What is wrong with a link's material or laminate, whose keys lie in the table at `path`.
+  void check_wall(const WallDescription& wall, const std::string& path) {
+    if (const auto* material = std::get_if<Material>(&wall)) {
+      check_fields(*material, path + ".material");
+      return;
+    }
+    const LaminateDescription& laminate = std::get<LaminateDescription>(wall);
+    const std::string key = path + ".laminate";
+    const std::size_t before = problems_.size();
+    check_fields(laminate.lamina, key + ".lamina");
+    const Lamina& ply = laminate.lamina;
+    const double bound = std::sqrt(ply.longitudinal_modulus / ply.transverse_modulus);
+    if (problems_.size() == before && !(std::abs(ply.poisson_ratio) < bound)) {
+      wrong(key + ".lamina.poisson_ratio", fmt::format("{}", ply.poisson_ratio),
+            fmt::format("must be less than {:.4g}, the root of longitudinal over transverse modulus", bound),
+            "give nu12, the contraction across the fibres per strain along them");
+    }
+    int plies = 0;
+    for (std::size_t i = 0; i < laminate.plies.size(); ++i) {
+      check_fields(laminate.plies[i], join_path(key + ".plies", i));
+      plies += std::max(laminate.plies[i].count, 0);
+    }
+    if (plies == 0) {
+      wrong(key + ".plies", "", "has no plies", "write plies = [{ count = 4, angle = 0 }, ...]");
+    }
+  }
+
+  void check(const TubeDescription& tube, const std::string& path) {
+    const std::size_t before = problems_.size();
+    check_fields(tube, path);
+    if (problems_.size() == before && !(tube.inner_diameter < tube.outer_diameter)) {
+      wrong(path + ".inner_diameter", format_quantity(tube.inner_diameter, Dimension::length),
+            fmt::format("must be less than outer_diameter, {}",
+                        format_quantity(tube.outer_diameter, Dimension::length)),
+            "take twice the wall from the outer diameter");
+    }
+    check_wall(tube.wall, path);
+  }
+
+  void check(const BarDescription& bar, const std::string& path) {
+    check_fields(bar, path);
+    finite(bar.width_along, path + ".width_along");
+    check_wall(bar.wall, path);
+  }
+
+  void check_beam(const BodyDescription& body, const std::string& path) {
+    const bool tube = std::holds_alternative<TubeDescription>(*body.beam);
+    std::visit([&](const auto& beam) { check(beam, path + (tube ? ".tube" : ".bar")); }, *body.beam);
+    if (body.mass != 0.0 || !body.centre.isZero(0.0) || !body.inertia.isZero(0.0)) {
+      wrong(path + ".mass", "", "follows from the section and the material",
+            "leave mass, centre and inertia at zero");
+    }
+    if (!body.turns_with.empty()) {
+      wrong(path + ".turns_with", quoted(body.turns_with), "belongs to a body on a pin, not to the link itself",
+            "leave it out");
+    }
+    if (body.on == "platform") {
+      wrong(path + ".on", quoted(body.on), "is no link between two joints", "give its mass, or name a link");
+    }
+  }
+
   void check(const BodyDescription& body, const std::string& path) {
+    if (body.beam) {
+      check_beam(body, path);
+      return;
+    }
     check_number(body.mass, Dimension::mass, {.min = 0.0, .max = 1000.0}, path + ".mass",
                  "give the mass, such as \"80 g\"", problems_);
     finite(body.centre, path + ".centre");

@@ -9,7 +9,8 @@ namespace zwidth {
 
 /// Everything that is wrong with a description, whether read or made in code: values out of range, names
 /// unknown or used twice, geometry that never closes. Keys are those of the device file; places are empty.
-/// Empty means that a `Mechanism` can be built from it, and that `drive_problems` may be asked about its drives.
+/// Empty means that a `Mechanism` can be built from it, and that `drive_problems` may be asked about its
+/// drives.
 std::vector<Problem> validate(const Description& description);
 
 }  // namespace zwidth

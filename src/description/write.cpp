@@ -261,11 +261,51 @@ class Writer {
       lines.push_back({"turns_with", text(body.turns_with)});
       lines.push_back({"pivot", array(body.pivot, Dimension::length)});
     }
+    if (body.beam) {
+      add_source(lines, body.source, body.sources);
+      table("[[body]]", lines);
+      std::visit([this](const auto& beam) { write_beam(beam); }, *body.beam);
+      return;
+    }
     lines.push_back({"mass", quantity(body.mass, Dimension::mass)});
     lines.push_back({"centre", array(body.centre, Dimension::length)});
     lines.push_back({"inertia", symmetric(body.inertia)});
     add_source(lines, body.source, body.sources);
     table("[[body]]", lines);
+  }
+
+  void write_beam(const TubeDescription& tube) {
+    Lines lines;
+    add_fields(lines, tube, TubeDescription{});
+    add_wall(lines, tube.wall);
+    add_source(lines, tube.source, tube.sources);
+    table("[body.tube]", lines);
+  }
+
+  void write_beam(const BarDescription& bar) {
+    Lines lines;
+    add_fields(lines, bar, BarDescription{});
+    if (!bar.width_along.isZero(0.0))
+      lines.push_back({"width_along", array(bar.width_along, Dimension::number)});
+    add_wall(lines, bar.wall);
+    add_source(lines, bar.source, bar.sources);
+    table("[body.bar]", lines);
+  }
+
+  void add_wall(Lines& lines, const WallDescription& wall) {
+    if (const auto* material = std::get_if<Material>(&wall)) {
+      lines.push_back({"material", part(*material, catalogue_)});
+      return;
+    }
+    const LaminateDescription& laminate = std::get<LaminateDescription>(wall);
+    std::string plies;
+    for (const PlyDescription& ply : laminate.plies) {
+      plies += fmt::format("{}{{ count = {}, angle = {} }}", plies.empty() ? "" : ", ", ply.count,
+                           quantity(ply.angle, Dimension::angle));
+    }
+    lines.push_back(
+        {"laminate", fmt::format("{{ lamina = {}, plies = [{}], rule = {} }}",
+                                 part(laminate.lamina, catalogue_), plies, text(to_string(laminate.rule)))});
   }
 
   void write(const LoadDescription& load) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "zwidth/mechanism/beam_link.h"
 #include "zwidth/mechanism/delta.h"
 #include "zwidth/mechanism/families.h"
 
@@ -100,6 +101,11 @@ std::vector<BodyDescription> delta_leg_bodies(const DeltaDescription& delta,
       const JointDescription& joint = legs.legs[i].joints[upper ? 0 : 2];
       BodyDescription one = body;
       one.on = legs.legs[i].name + "/" + joint.name;
+      if (body.beam) {
+        if (auto* bar = std::get_if<BarDescription>(&*one.beam)) bar->width_along = frame * bar->width_along;
+        result.push_back(one);
+        continue;
+      }
       one.centre = joint.point + frame * body.centre;
       one.inertia = frame * body.inertia * frame.transpose();
       result.push_back(one);
@@ -112,7 +118,20 @@ DeltaMasses delta_masses(const Description& description) {
   DeltaMasses masses;
   masses.gravity = -description.gravity.z();
   double along = 0.0, normal = 0.0, inertia = 0.0;
-  for (const BodyDescription& body : description.bodies) {
+  const auto& delta = std::get<DeltaDescription>(description.mechanism);
+  for (const BodyDescription& each : description.bodies) {
+    BodyDescription body = each;
+    if (each.beam) {
+      const bool upper = each.on == "upper_arm";
+      const Vector3 end =
+          upper ? Vector3(delta.upper_arm * Vector3::UnitX()) : Vector3(delta.forearm * Vector3::UnitZ());
+      const Vector3 axis = upper ? Vector3(-Vector3::UnitY()) : Vector3(Vector3::UnitX());
+      if (const auto link = beam_link(*each.beam, Vector3::Zero(), end, axis)) {
+        body.mass = link->mass;
+        body.centre = link->centre;
+        body.inertia = link->inertia;
+      }
+    }
     if (body.on == "upper_arm") {
       masses.upper_arm += body.mass;
       along += body.mass * body.centre.x();

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <map>
 
+#include "zwidth/mechanism/beam_link.h"
 #include "zwidth/mechanism/families.h"
 
 namespace zwidth {
@@ -38,6 +39,7 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
     for (const JointDescription& joint : leg.joints) ++uses[joint.name];
   }
   std::vector<Vector3> points;  // of the joints at the legs' zero posture
+  std::vector<Vector3> ends;    // of the links: the next joint's point, or the tip
   std::vector<double> home;
   for (const LegDescription& leg : mechanism.legs) {
     assert(leg.joints.size() <= kMaxLegJoints);
@@ -65,6 +67,7 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
       characteristic_length_ = std::max(characteristic_length_, one.offset.norm());
       joints_.push_back(one);
       points.push_back(joint.point);
+      ends.push_back(&joint == &leg.joints.back() ? leg.tip : (&joint + 1)->point);
       home.push_back(joint.home);
       inner = joint.point;
     }
@@ -89,6 +92,19 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
       model.centre = body.centre - body.pivot;
     }
     model.inertia = body.inertia;
+    if (body.beam) {
+      const Vector3& from = points[model.joint];
+      const auto link = beam_link(*body.beam, from, ends[model.joint], joints_[model.joint].axis);
+      assert(link);
+      model.mass = link->mass;
+      model.centre = link->centre - from;
+      model.inertia = link->inertia;
+      beams_.push_back({.joint = model.joint,
+                        .length = link->length,
+                        .frame = link->frame,
+                        .rigidity = link->rigidity,
+                        .flexibility = beam_flexibility(link->rigidity, link->length)});
+    }
     if (model.joint < 0 && platform_ == PlatformFreedom::point) {
       // The platform is the first leg's last link: its turning counts, though the tool's rows leave it out.
       const LegModel& leg = legs_.front();
@@ -98,6 +114,8 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
     }
     bodies_.push_back(model);
   }
+  std::sort(beams_.begin(), beams_.end(),
+            [](const BeamModel& a, const BeamModel& b) { return a.joint < b.joint; });
 }
 
 std::span<const int> Mechanism::tool_axes() const {

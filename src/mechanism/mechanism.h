@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "zwidth/description/description.h"
+#include "zwidth/math/beam.h"
 #include "zwidth/mechanism/closed_form.h"
 #include "zwidth/mechanism/delta.h"
 #include "zwidth/mechanism/serial_chain.h"
@@ -40,6 +41,16 @@ struct BodyModel {
   Matrix3 inertia = Matrix3::Zero();  ///< about the centre, frame of the link that turns it [kg m^2]
 };
 
+/// A link that is a beam, from the point of the joint that moves it to that of the next one, or to the leg's
+/// tip. Its mass is among the bodies.
+struct BeamModel {
+  int joint = -1;                       ///< that moves it: index in `Mechanism::joints()`
+  double length = 0.0;                  ///< [m]
+  Matrix3 frame = Matrix3::Identity();  ///< columns: along it, its section's y and z, in the link's frame
+  BeamRigidity rigidity;
+  BeamFlexibility flexibility;  ///< of this length
+};
+
 struct LegModel {
   int first = 0;                  ///< index of its first joint
   int count = 0;                  ///< number of joints
@@ -53,7 +64,7 @@ struct LegModel {
 /// Postures, and through them every other question, come from `solve_forward` and `solve_inverse`.
 class Mechanism {
  public:
-  /// REQUIRES: `validate(description)` finds nothing.
+  /// REQUIRES: `validate(description)` and `beam_problems(description)` find nothing.
   explicit Mechanism(const Description& description);
 
   const std::string& name() const { return name_; }
@@ -75,6 +86,7 @@ class Mechanism {
   const std::vector<JointModel>& joints() const { return joints_; }
   const std::vector<LegModel>& legs() const { return legs_; }
   const std::vector<BodyModel>& bodies() const { return bodies_; }
+  const std::vector<BeamModel>& beams() const { return beams_; }  ///< in the order of their joints
   const std::vector<std::string>& joint_names() const { return joint_names_; }  ///< "LEG/JOINT"
   const std::vector<std::string>& active_names() const {
     return active_names_;
@@ -107,6 +119,7 @@ class Mechanism {
   std::vector<JointModel> joints_;
   std::vector<LegModel> legs_;
   std::vector<BodyModel> bodies_;
+  std::vector<BeamModel> beams_;
   std::vector<std::string> joint_names_;
   std::vector<std::string> active_names_;
   std::vector<int> active_joints_;

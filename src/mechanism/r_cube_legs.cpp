@@ -91,6 +91,11 @@ std::vector<BodyDescription> r_cube_leg_bodies(const RCubeDescription& r_cube,
       const JointDescription& moves = legs.legs[i].joints[joint];
       BodyDescription one = body;
       one.on = legs.legs[i].name + "/" + moves.name;
+      if (body.beam) {
+        if (auto* bar = std::get_if<BarDescription>(&*one.beam)) bar->width_along = frame * bar->width_along;
+        result.push_back(one);
+        continue;
+      }
       one.centre = moves.point + frame * body.centre;
       one.inertia = frame * body.inertia * frame.transpose();
       result.push_back(one);

@@ -35,6 +35,7 @@ TEST(Catalogue, EveryPartHasASource) {
   expect_every_value_has_a_source<Cylinder>();
   expect_every_value_has_a_source<Regulator>();
   expect_every_value_has_a_source<Potentiometer>();
+  expect_every_value_has_a_source<Lamina>();
 }
 
 // Data sheets repeat themselves: a value mistyped disagrees with the others. The tolerances are those of the

@@ -351,5 +351,44 @@ TEST(Overrides, AValueCannotSmuggleInAKey) {
   EXPECT_EQ(problem.key, "mechanism.forearm");
 }
 
+TEST(Read, LinksThatAreBeams) {
+  const auto body = [](const std::string& keys) {
+    return "[device]\nname = \"x\"\n[mechanism]\ntype = \"serial\"\n[[joint]]\nname = \"a\"\n"
+           "type = \"revolute\"\na = 0.1\nrange = [-1, 1]\n[[body]]\non = \"arm/a\"\n" +
+           keys;
+  };
+  const Description device = parse_description(
+      body("tube = { outer_diameter = \"12 mm\", material = \"carbon-rod\" }\n"), "x.toml", {}, catalogue());
+  const auto& tube = std::get<TubeDescription>(*device.bodies[0].beam);
+  EXPECT_EQ(tube.outer_diameter, 0.012);
+  EXPECT_EQ(tube.inner_diameter, 0.0);
+  EXPECT_EQ(std::get<Material>(tube.wall).info.name, "carbon-rod");
+
+  const auto only = [&](const std::string& keys) {
+    const std::vector<Problem> problems = problems_of(body(keys));
+    return problems.size() == 1 ? to_string(problems[0]) : std::to_string(problems.size()) + " problems";
+  };
+  const std::string tube_text = "tube = { outer_diameter = \"12 mm\", material = \"carbon-rod\" }\n";
+  EXPECT_NE(only(tube_text + "mass = \"10 g\"\n").find("13:8: body[0].mass = \"10 g\": follows from"),
+            std::string::npos)
+      << only(tube_text + "mass = \"10 g\"\n");
+  EXPECT_NE(only(tube_text + "bar = { width = 0.01, height = 0.01, material = \"carbon-rod\" }\n")
+                .find("stands beside a tube"),
+            std::string::npos);
+  EXPECT_NE(only("tube = { outer_diameter = \"12 mm\", inner_diameter = \"12 mm\", material = \"acrylic\" }\n")
+                .find("body[0].tube.inner_diameter = \"12 mm\": must be less than outer_diameter"),
+            std::string::npos);
+  EXPECT_NE(only("tube = { outer_diameter = \"12 mm\", material = \"carbon-rods\" }\n").find("carbon-rod"),
+            std::string::npos);
+  EXPECT_NE(only("tube = { outer_diameter = \"12 mm\", material = \"acrylic\", laminate = { lamina = "
+                 "\"m55j-epoxy\", plies = [{ count = 1 }] } }\n")
+                .find("stands beside a laminate"),
+            std::string::npos);
+  EXPECT_NE(only("tube = { outer_diameter = \"12 mm\", laminate = { lamina = \"m55j-epoxy\", plies = [] } }\n")
+                .find("has no plies"),
+            std::string::npos);
+  EXPECT_NE(only("mass = \"-1 g\"\n").find("must be from 0 to 1000 kg"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace zwidth

@@ -35,6 +35,8 @@ TEST(Reference, TheDocumentHasTheKeysOfTheCode) {
 
 const std::set<std::string> kFamilies = {"delta", "five-bar", "r-cube", "serial", "serial-joint"};
 
+const std::set<std::string> kBeams = {"tube", "bar", "laminate", "ply"};
+
 const std::set<std::string> kPneumatic = {"pneumatic-drive", "mount"};
 
 // A file made of nothing but the examples of the reference.
@@ -43,7 +45,8 @@ std::string example_file() {
   for (const TableReference& table : file_reference()) {
     if (table.name == "motor") break;
     if (table.name == "posture") continue;  // as many joints as the mechanism has
-    if (kFamilies.contains(table.name) || kPneumatic.contains(table.name)) continue;
+    if (kFamilies.contains(table.name) || kPneumatic.contains(table.name) || kBeams.contains(table.name))
+      continue;
     if (table.name == "ratio" || table.name == "gearhead transmission")
       continue;  // a drive has one transmission
     std::string header = "[[" + table.name + "]]";
@@ -92,6 +95,37 @@ TEST(Reference, TheExamplesOfTheOtherTransmissionsRead) {
     }
     text.replace(from, to - from, keys);
     for (const Problem& problem : problems_of(text)) ADD_FAILURE() << to_string(problem) << "\n" << text;
+  }
+}
+
+TEST(Reference, TheExamplesOfBeamsRead) {
+  const std::string device =
+      "[device]\nname = \"x\"\n[mechanism]\ntype = \"serial\"\n"
+      "[[joint]]\nname = \"theta1\"\ntype = \"revolute\"\na = 0.1\nrange = [-0.5, 0.5]\n"
+      "[[body]]\non = \"arm/theta1\"\n";
+  const auto keys_of = [](const std::string& name) {
+    std::string text;
+    for (const TableReference& table : file_reference()) {
+      for (const KeyReference& key : table.keys) {
+        if (table.name == name && !key.example.empty()) text += key.key + " = " + key.example + "\n";
+      }
+    }
+    return text;
+  };
+  for (const std::string beam : {"tube", "bar"}) {
+    const std::string of_material = "[body." + beam + "]\n" + keys_of(beam);
+    std::string of_plies = of_material;
+    of_plies.erase(of_plies.find("material ="),
+                   of_plies.find('\n', of_plies.find("material =")) - of_plies.find("material =") + 1);
+    of_plies += "[body." + beam + ".laminate]\n" + keys_of("laminate");
+    std::string one_by_one = of_plies;
+    one_by_one.erase(one_by_one.find("plies ="),
+                     one_by_one.find('\n', one_by_one.find("plies =")) - one_by_one.find("plies =") + 1);
+    one_by_one += "[[body." + beam + ".laminate.plies]]\n" + keys_of("ply");
+    for (const std::string& text : {of_material, of_plies, one_by_one}) {
+      for (const Problem& problem : problems_of(device + text))
+        ADD_FAILURE() << to_string(problem) << "\n" << device + text;
+    }
   }
 }
 

@@ -257,6 +257,51 @@ TEST(Validate, InertiasBelongToBodies) {
   EXPECT_TRUE(validate(device).empty());
 }
 
+Description r_cube() {
+  return read_description("r-cube", {}, catalogue());
+}
+TubeDescription& tube_of(Description& device, std::size_t body) {
+  return std::get<TubeDescription>(*device.bodies[body].beam);
+}
+
+TEST(Validate, TubesHaveAWall) {
+  Description device = r_cube();
+  tube_of(device, 0).inner_diameter = tube_of(device, 0).outer_diameter;
+  EXPECT_TRUE(only_rule(device, "body[0].tube.inner_diameter").starts_with("must be less than outer_diameter"));
+  tube_of(device, 0).inner_diameter = 0.0;
+  EXPECT_TRUE(validate(device).empty());
+  tube_of(device, 0).outer_diameter = 0.0;
+  EXPECT_TRUE(only_rule(device, "body[0].tube.outer_diameter").starts_with("must be more than 0"));
+}
+
+TEST(Validate, MaterialsOfLinksArePossible) {
+  Description device = r_cube();
+  tube_of(device, 1).wall = Material{.elastic_modulus = 70e9, .poisson_ratio = 0.6, .density = 2700.0};
+  EXPECT_TRUE(only_rule(device, "body[1].tube.material.poisson_ratio").starts_with("must be more than -1"));
+  device = r_cube();
+  auto& laminate = std::get<LaminateDescription>(tube_of(device, 1).wall);
+  laminate.lamina.poisson_ratio = 5.1;  // the root of 300 / 12 is 5
+  EXPECT_TRUE(
+      only_rule(device, "body[1].tube.laminate.lamina.poisson_ratio").starts_with("must be less than 5"));
+  laminate.lamina.poisson_ratio = -4.9;
+  EXPECT_TRUE(validate(device).empty());
+  for (PlyDescription& ply : laminate.plies) ply.count = 0;
+  EXPECT_EQ(only_rule(device, "body[1].tube.laminate.plies"), "has no plies");
+  laminate.plies.clear();
+  EXPECT_EQ(only_rule(device, "body[1].tube.laminate.plies"), "has no plies");
+  laminate.plies = {{.count = 3}, {.count = -1}};
+  EXPECT_TRUE(only_rule(device, "body[1].tube.laminate.plies[1].count").starts_with("must be from 0"));
+}
+
+TEST(Validate, ALinkThatIsABeamHasItsMassFromIt) {
+  Description device = r_cube();
+  device.bodies[0].mass = 0.1;
+  EXPECT_EQ(only_rule(device, "body[0].mass"), "follows from the section and the material");
+  device = r_cube();
+  device.bodies[0].on = "platform";
+  EXPECT_EQ(only_rule(device, "body[0].on"), "is no link between two joints");
+}
+
 TEST(Validate, EveryJointHasOneDriveAtMost) {
   Description device = delta();
   device.drives.push_back(device.drives[0]);

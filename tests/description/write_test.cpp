@@ -38,6 +38,23 @@ TEST(Write, LegsReadBackEqual) {
   EXPECT_EQ(read_again(device), device);
 }
 
+TEST(Write, LinksThatAreBeamsReadBackEqual) {
+  Description device = read_description("r-cube", {}, catalogue());
+  device.bodies[1].beam = BarDescription{.width = 0.01,
+                                         .height = 0.013,
+                                         .width_along = {0.0, 2.0, 0.1},
+                                         .wall = *catalogue().find<Material>("acrylic"),
+                                         .source = "mine",
+                                         .sources = {{"width", "theirs"}}};
+  auto& laminate = std::get<LaminateDescription>(std::get<TubeDescription>(*device.bodies[2].beam).wall);
+  laminate.lamina.density = 1700.0;
+  laminate.plies.front().angle = 0.3;
+  laminate.rule = LaminateRule::lamination;
+  EXPECT_EQ(read_again(device), device) << written(device);
+  const Description legs = spelled_out(device);
+  EXPECT_EQ(read_again(legs), legs) << written(legs);
+}
+
 TEST(Write, AnyDigitsReadBackEqual) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> any(0.01, 0.2);

@@ -45,10 +45,11 @@ struct Field {
   std::string_view example;  ///< as TOML
 };
 
-/// The fields of Motor, Gearhead, Encoder, Amplifier, Cable, Bearing, Material, Cylinder, Regulator,
-/// Potentiometer, DeltaDescription, FiveBarDescription, RCubeDescription, SerialJointDescription,
-/// CapstanDescription, RatioDescription, GearheadDescription, ArmCylinderDescription, FlexureDescription,
-/// DriveOutputDescription, DriveDescription and PneumaticDriveDescription.
+/// The fields of Motor, Gearhead, Encoder, Amplifier, Cable, Bearing, Material, Lamina, Cylinder, Regulator,
+/// Potentiometer, TubeDescription, BarDescription, PlyDescription, DeltaDescription, FiveBarDescription,
+/// RCubeDescription, SerialJointDescription, CapstanDescription, RatioDescription, GearheadDescription,
+/// ArmCylinderDescription, FlexureDescription, DriveOutputDescription, DriveDescription and
+/// PneumaticDriveDescription.
 template <class Owner>
 std::span<const Field<Owner>> fields();
 

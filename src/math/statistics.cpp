@@ -20,7 +20,8 @@ std::optional<double> frequency_resolution(double sample_rate, std::size_t sampl
   if (!(sample_rate > 0.0) || windows == 0 || samples < windows) {
     return std::nullopt;
   }
-  return sample_rate / static_cast<double>(samples / windows);
+  const std::size_t window = samples / windows;
+  return sample_rate / static_cast<double>(window);
 }
 
 }  // namespace zwidth

@@ -188,7 +188,8 @@ void add_five_bar(Quantities& q) {
     return Values{circle->radius, circle->centre_y};
   };
   q["fivebar.normalised_lengths"] = [](const Inputs& in) {
-    const FiveBarGeometry r = normalised_lengths(checked({in.number("a1_cm"), in.number("a2_cm"), in.number("a3_cm")}));
+    const FiveBarGeometry r =
+        normalised_lengths(checked({in.number("a1_cm"), in.number("a2_cm"), in.number("a3_cm")}));
     return Values{r.crank, r.coupler, r.half_base};
   };
 

@@ -461,6 +461,15 @@ inline constexpr std::array<Design, 40> kDesigns = {{
      {{1.000, 0.005, 0.000, 1.000, 0.000}}},
 }};
 
+/// Designs of table 7.3, counted from 1, whose I_f does not come out.
+inline constexpr std::array<int, 16> kInertiaMisfits = {6,  7,  14, 16, 25, 26, 27, 29,
+                                                        31, 33, 34, 35, 37, 38, 39, 40};
+
+/// Eq 5.132, upper triangle by rows [mixed SI]. Eq 5.133 and 5.134 are the same with the axes in turn.
+inline constexpr std::array<double, 21> kLoadedStiffness = {{16584, -446, -1486, 257, -2370, 2737, 13,
+                                                             38,    -6,   64,    -56, 136,   -24,  213,
+                                                             -271,  5,    -37,   54,  339,   -394, 663}};
+
 /// Tables 7.6 and 7.7: one laminate for each of the three links.
 struct Laminate {
   double translation;                              ///< deflection [mm]

@@ -1,10 +1,15 @@
 #include "zwidth/analysis/r_cube_synthesis.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "zwidth/math/beam.h"
 #include "zwidth/math/section.h"
+#include "zwidth/mechanism/r_cube_dynamics.h"
+#include "zwidth/mechanism/r_cube_stiffness.h"
 
 namespace zwidth {
 namespace {
@@ -140,6 +145,33 @@ std::optional<double> hollow_section_ratio(const HollowSection& section, const I
     }
   }
   return 0.5 * (low + high);
+}
+
+double r_cube_frequency_index(const Matrix3& leg_mass, const Matrix6& leg_stiffness) noexcept {
+  const Eigen::Matrix<double, 3, 6> rows = leg_stiffness.topRows<3>();
+  return leg_mass.ldlt().solve(rows).norm();
+}
+
+std::optional<RCubeObjectives> r_cube_objectives(const RCubeDesign& design,
+                                                 const RCubeLinkChoice& links) noexcept {
+  const double qmax = design.max_angle;
+  if (!(qmax > 0.0 && qmax < 0.5 * std::numbers::pi)) return std::nullopt;
+  const double l1 = design.half_workspace / std::sin(qmax);
+  const RCubeGeometry geometry{
+      .drive_link = l1, .inner_link = design.inner_link, .outer_link = design.outer_link, .base_offset = l1};
+  if (!geometry.valid()) return std::nullopt;
+  const RCubeSolution folded = r_cube_forward(geometry, {-qmax, -qmax, 0.0}),
+                      extended = r_cube_forward(geometry, Vector3::Constant(qmax));
+  if (!folded.closed() || !extended.closed()) return std::nullopt;
+  RCubeMasses masses = r_cube_masses(geometry, {links.section, links.section, links.section}, links.density);
+  masses.platform = links.platform_mass;
+  const std::optional<Matrix3> mass = r_cube_cartesian_mass(masses, folded);
+  if (!mass) return std::nullopt;
+  const BeamRigidity beam = beam_rigidity(links.section, links.elastic_modulus, links.shear_modulus);
+  const Matrix6 K = r_cube_stiffness({.geometry = geometry, .rigidity = {beam, beam, beam}}, extended);
+  return RCubeObjectives{.closeness = std::tan(qmax),
+                         .inertia = mass->determinant(),
+                         .compliance = 1.0 / K.topLeftCorner<3, 3>().determinant()};
 }
 
 }  // namespace zwidth

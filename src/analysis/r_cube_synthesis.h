@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "zwidth/math/section.h"
 #include "zwidth/math/spatial.h"
 #include "zwidth/mechanism/r_cube.h"
 
@@ -81,5 +82,29 @@ struct HollowSection {
 /// length, that is the inertia about the end and once more the centre's share. Nothing unless 0 <= range.min <
 /// range.max < 1 and all of `section` is positive.
 std::optional<double> hollow_section_ratio(const HollowSection& section, const Interval& range) noexcept;
+
+/// Frobenius norm of M_1^-1 K_C1 with the joint-space mass matrix of a leg and the first three rows of its
+/// stiffness (eq 4.107), the omega_n of table 7.3. Its units are mixed: it ranks designs, and is no frequency.
+/// REQUIRES: mass positive definite.
+double r_cube_frequency_index(const Matrix3& leg_mass, const Matrix6& leg_stiffness) noexcept;
+
+/// What all links of a design are made of while it is searched for. The source does not say.
+struct RCubeLinkChoice {
+  Section section;               ///< of a tube
+  double elastic_modulus = 0.0;  ///< E [Pa]
+  double shear_modulus = 0.0;    ///< G [Pa]
+  double density = 0.0;          ///< [kg/m^3]
+  double platform_mass = 0.0;    ///< [kg]
+};
+
+/// The source's objectives, all to be small.
+struct RCubeObjectives {
+  double closeness = 0.0;   ///< O1 = tan qmax (eq 6.82)
+  double inertia = 0.0;     ///< O2 = det M_C with two legs folded and one at home (eq 6.83) [kg^3]
+  double compliance = 0.0;  ///< O3 = 1/det K_CA fully extended (eq 6.84) [(m/N)^3]
+};
+/// Nothing where the design's lengths are not positive or its legs do not reach these two postures.
+std::optional<RCubeObjectives> r_cube_objectives(const RCubeDesign& design,
+                                                 const RCubeLinkChoice& links) noexcept;
 
 }  // namespace zwidth

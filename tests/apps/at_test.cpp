@@ -349,5 +349,88 @@ TEST(At, TextFitsTheWidthItIsGiven) {
   }
 }
 
+// Görgülü 2018, table 7.8, as the device's file has it: spec values of the stated design, moduli by the mean of
+// plies.
+TEST(At, StiffnessOfTheRCube) {
+  const json home = run({"at", "r-cube", "--joints", "0,0,0", "--only",
+                         "stiffness,compliance,compliance_shares,natural_frequencies,cartesian_mass", "--json"})
+                        .json();
+  const json K = home["stiffness"], C = home["compliance"];
+  ASSERT_EQ(K.size(), 6u);
+  EXPECT_NEAR(K[0][0].get<double>() / 101870.0, 1.0, 1e-5);
+  EXPECT_NEAR(K[0][5].get<double>() / 3795.6, 1.0, 2e-5);
+  EXPECT_NEAR(K[3][3].get<double>() / 416.80, 1.0, 2e-5);
+  double one = 0.0, worst = 0.0;
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) {
+      double sum = 0.0;
+      for (int k = 0; k < 6; ++k) sum += K[i][k].get<double>() * C[k][j].get<double>();
+      (i == j ? one : worst) = i == j ? std::max(one, std::abs(sum - 1.0)) : std::max(worst, std::abs(sum));
+    }
+  }
+  EXPECT_LT(one, 1e-9);
+  EXPECT_LT(worst, 1e-6);
+  for (int axis = 0; axis < 3; ++axis) {
+    double sum = 0.0;
+    for (const json& part : home["compliance_shares"]) sum += part["shares"][axis].get<double>();
+    EXPECT_NEAR(sum, 1.0, 1e-9);
+  }
+  // What vibrates at home: 1/(2 pi) of these is some hundred hertz; motors that may swing raise it.
+  const json& modes = home["natural_frequencies"];
+  double before = 0.0;
+  for (int m = 0; m < 3; ++m) {
+    const double held = modes["held"]["frequencies"][m], free = modes["free"]["frequencies"][m],
+                 block = modes["rotation_held"]["frequencies"][m];
+    EXPECT_GE(held, before);
+    EXPECT_GT(free, held);
+    EXPECT_GT(block, held);
+    before = held;
+  }
+
+  const json load = run({"at", "r-cube", "--joints", "32.5deg,32.5deg,32.5deg", "--load", "-20,0,0", "--only",
+                         "deflection", "--json"})
+                        .json();
+  double squares = 0.0;
+  for (int i = 0; i < 3; ++i) squares += std::pow(load["deflection"][i].get<double>(), 2);
+  EXPECT_NEAR(std::sqrt(squares), 1.369e-3, 1e-6);
+  EXPECT_GT(load["deflection"][0].get<double>(), 0.0);  // the way the hand pushes
+}
+
+TEST(At, StiffnessIsNotGivenWhereLinksHaveNoSection) {
+  const Outcome outcome = run({"at", "seven-dof", "--joints", "0,60deg,0,45deg,0,30deg,0", "--only",
+                               "stiffness,natural_frequencies", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json document = outcome.json();
+  EXPECT_TRUE(document["stiffness"].is_null());
+  EXPECT_NE(document["notes"]["stiffness"].get<std::string>().find("not given by the source"),
+            std::string::npos);
+  EXPECT_NE(document["notes"]["natural_frequencies"].get<std::string>().find("not given by the source"),
+            std::string::npos);
+  EXPECT_NE(run({"at", "seven-dof", "--joints", "0,60deg,0,45deg,0,30deg,0", "--only", "stiffness"})
+                .out.find("not given by the source"),
+            std::string::npos);
+  // A delta's cables give, its links are rigid.
+  const json delta = run({"at", "delta", "--joints", "10deg,20deg,30deg", "--only",
+                          "stiffness,stiffness_with_drives", "--json"})
+                         .json();
+  EXPECT_TRUE(delta["stiffness"].is_null());
+  EXPECT_EQ(delta["stiffness_with_drives"].size(), 3u);
+}
+
+TEST(At, StiffnessTurnsWithTheFrame) {
+  const std::vector<std::string> base = {
+      "at", "delta", "--joints", "10deg,20deg,30deg", "--only", "stiffness_with_drives", "--json"};
+  std::vector<std::string> turned = base;
+  turned.insert(turned.end(), {"--frame", "user"});
+  const json K = run(base).json()["stiffness_with_drives"], U = run(turned).json()["stiffness_with_drives"];
+  double trace_K = 0.0, trace_U = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    trace_K += K[i][i].get<double>();
+    trace_U += U[i][i].get<double>();
+  }
+  EXPECT_NEAR(trace_U / trace_K, 1.0, 1e-12);
+  EXPECT_GT(difference(K, U), 1e-3 * trace_K);
+}
+
 }  // namespace
 }  // namespace zwidth::testing

@@ -93,8 +93,7 @@ TEST(Errors, NeitherJointsNorPosition) {
 }
 TEST(Errors, UnknownKeyInOnly) {
   expect_refused({"at", "delta", "--joints", "0,0,0", "--only", "postion"}, 2, {"postion", "position"});
-  expect_refused({"at", "delta", "--joints", "0,0,0", "--only", "stiffness"}, 2,
-                 {"stiffness", "not computed yet"});
+  expect_refused({"at", "delta", "--joints", "0,0,0", "--only", "stifness"}, 2, {"stifness", "stiffness"});
 }
 TEST(Errors, UnknownFrame) {
   expect_refused({"at", "delta", "--joints", "0,0,0", "--frame", "world"}, 2, {"world", "user"});

@@ -74,6 +74,10 @@ std::vector<std::string> Inputs::texts(const std::string& key) const {
   return required(values_, key).get<std::vector<std::string>>();
 }
 
+Inputs Inputs::table(const std::string& key) const {
+  return Inputs(required(values_, key));
+}
+
 std::string Inputs::text(const std::string& key) const {
   return required(values_, key).get<std::string>();
 }
@@ -147,7 +151,18 @@ void run_case(const Quantities& quantities, const json& one, Tally& tally) {
   std::string expected = wanted.is_string() ? wanted.get<std::string>() : "", got, difference = "-";
   bool ok = false;
   try {
-    const Answer answer = found->second(Inputs(one.at("inputs")));
+    Answer answer = found->second(Inputs(one.at("inputs")));
+    if (const auto* direction = std::get_if<UpToSign>(&answer)) {
+      Values values = direction->values, reference;
+      flatten(wanted, reference);
+      double along = 0.0;
+      for (std::size_t i = 0; i < std::min(values.size(), reference.size()); ++i)
+        along += values[i] * reference[i];
+      if (along < 0.0) {
+        for (double& value : values) value = -value;
+      }
+      answer = std::move(values);
+    }
     if (const auto* name = std::get_if<std::string>(&answer)) {
       got = *name;
       ok = wanted.is_string() && expected == got;
@@ -215,6 +230,7 @@ int run(const std::vector<std::string>& files) {
   add_five_bar(quantities);
   add_actuation(quantities);
   add_r_cube(quantities);
+  add_r_cube_elastic(quantities);
   add_seven_dof(quantities);
   add_pneumatic(quantities);
   Tally tally;

@@ -37,6 +37,7 @@ class Inputs {
   bool flag(const std::string& key) const;
   std::string text(const std::string& key) const;
   std::vector<std::string> texts(const std::string& key) const;
+  Inputs table(const std::string& key) const;
 
  private:
   const nlohmann::json& values_;
@@ -49,8 +50,12 @@ using Values = std::vector<double>;
 struct AngleRows {
   std::vector<Values> rows;
 };
+/// A direction of which either sign will do.
+struct UpToSign {
+  Values values;
+};
 /// Numbers, a name, or solutions.
-using Answer = std::variant<Values, std::string, AngleRows>;
+using Answer = std::variant<Values, std::string, AngleRows, UpToSign>;
 using Quantity = std::function<Answer(const Inputs&)>;
 using Quantities = std::map<std::string, Quantity>;
 
@@ -59,6 +64,7 @@ void add_arm(Quantities& quantities);
 void add_five_bar(Quantities& quantities);
 void add_actuation(Quantities& quantities);
 void add_r_cube(Quantities& quantities);
+void add_r_cube_elastic(Quantities& quantities);
 void add_seven_dof(Quantities& quantities);
 void add_pneumatic(Quantities& quantities);
 

@@ -21,8 +21,6 @@ constexpr const char* kLoad = "give --load";
 /// Keys of the head, and of the answer to --position; `write_sections` does not write them.
 const std::vector<std::string> kOtherKeys = {"device",    "status",           "frame", "reason", "notes",
                                              "solutions", "nearest_reachable"};
-/// Questions that a later release answers.
-const std::vector<std::string> kLaterKeys = {"stiffness", "compliance", "natural_frequencies"};
 
 /// The direction that a delta's forearms, coplanar, do not hold. Others leave it open.
 std::optional<ToolVector> free_direction(const Posture& posture, const Frame& frame) {
@@ -161,6 +159,10 @@ const std::vector<Section>& sections() {
       {"Inertia", {"mass_matrix"}, write_mass_matrix, true},
       {"Inertia", {"mass_matrix_point_mass"}, write_point_mass, true, "only for a delta"},
       {"Inertia", {"cartesian_mass"}, write_cartesian_mass, true},
+      {"Stiffness", {"stiffness", "stiffness_with_drives", "compliance"}, write_stiffness},
+      {"Stiffness", {"deflection"}, write_deflection, false, kLoad},
+      {"Stiffness", {"compliance_shares"}, write_compliance_shares},
+      {"Vibration", {"natural_frequencies"}, write_natural_frequencies, true},
       {"Resolution", {"resolution"}, write_resolution, true},
   };
   return table;
@@ -185,8 +187,6 @@ void check_only(const std::vector<std::string>& only) {
   std::vector<std::string> known = kOtherKeys;
   for (const Section& section : sections()) known.insert(known.end(), section.keys.begin(), section.keys.end());
   for (const std::string& key : only) {
-    if (std::find(kLaterKeys.begin(), kLaterKeys.end(), key) != kLaterKeys.end())
-      throw InputError(fmt::format("--only {}: is not computed yet", key));
     if (std::find(known.begin(), known.end(), key) == known.end())
       throw InputError(fmt::format("--only {}: there is no such key; {}", key, suggest(key, known)));
   }

@@ -151,6 +151,11 @@ void write_mass_matrix(const Situation&, Answer&);
 void write_point_mass(const Situation&, Answer&);
 void write_cartesian_mass(const Situation&, Answer&);
 void write_resolution(const Situation&, Answer&);
+// stiffness.cpp
+void write_stiffness(const Situation&, Answer&);
+void write_deflection(const Situation&, Answer&);
+void write_compliance_shares(const Situation&, Answer&);
+void write_natural_frequencies(const Situation&, Answer&);
 
 /// "10.000°" or "1.2345 mm".
 std::string joint_text(const Mechanism& mechanism, int joint, double value);

@@ -1,0 +1,275 @@
+#include "zwidth/mechanism/stiffness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "section.h"
+
+#include "zwidth/mechanism/dynamics.h"
+#include "zwidth/mechanism/vibration.h"
+
+/// How far the tool gives way, and how it vibrates.
+
+namespace zwidth::at {
+
+namespace {
+
+constexpr const char* kNoBeams =
+    "not given by the source: a leg has neither a link that is a beam (tube, bar) nor a drive of known "
+    "stiffness";
+
+/// Stiffness of each active joint's drive where it stands; empty unless all that need one are known.
+ActiveVector drive_stiffness(const Situation& at) {
+  const Mechanism& mechanism = at.mechanism;
+  ActiveVector stiffness(mechanism.active_count());
+  const ActiveVector joints = at.posture.active();
+  for (int i = 0; i < mechanism.active_count(); ++i) {
+    stiffness[i] = HUGE_VAL;
+    if (mechanism.is_free(i)) continue;
+    const auto& drive = at.model.drives[static_cast<size_t>(i)];
+    const auto known = drive ? drive->joint_stiffness(joints[i]) : std::nullopt;
+    if (!known) return {};
+    stiffness[i] = *known;
+  }
+  return stiffness;
+}
+
+/// The stiffness of links alone and of links and drives, each only where it means something.
+struct Elastic {
+  std::optional<Stiffness> links, with_drives;
+  StiffnessOptions drives;  ///< of `with_drives`
+
+  /// What is known best.
+  const Stiffness* best() const { return with_drives ? &*with_drives : links ? &*links : nullptr; }
+  StiffnessOptions best_options() const { return with_drives ? drives : StiffnessOptions{}; }
+  const char* best_of() const {
+    return with_drives ? (links ? "links and drives" : "drives alone, the links are rigid") : "links";
+  }
+};
+
+Elastic elastic(const Situation& at) {
+  Elastic result;
+  const Stiffness links = stiffness(at.posture);
+  if (!links.rigid) result.links = links;
+  result.drives.drive_stiffness = drive_stiffness(at);
+  if (result.drives.drive_stiffness.size() > 0) {
+    const Stiffness all = stiffness(at.posture, result.drives);
+    if (!all.rigid) result.with_drives = all;
+  }
+  return result;
+}
+
+/// In the user's frame, with as many rows as the stiffness has.
+Eigen::MatrixXd turned(const Situation& at, const Matrix6& matrix, int rows) {
+  Matrix6 R = Matrix6::Zero();
+  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = at.frame.R;
+  const Matrix6 result = R * matrix * R.transpose();
+  return result.topLeftCorner(rows, rows);
+}
+
+std::string free_text(const Situation& at, const Compliance& compliance) {
+  const Vector3 linear = at.frame.R * Vector3(compliance.free_direction.head<3>());
+  return fmt::format("nothing holds the tool along ({})", direction_text(linear));
+}
+
+/// Links of the mechanism that are not rigid but have no beam: those with a length.
+std::string rigid_links(const Mechanism& mechanism) {
+  std::string names;
+  for (const LegModel& leg : mechanism.legs()) {
+    for (int j = leg.first; j < leg.first + leg.count; ++j) {
+      const bool last = j + 1 == leg.first + leg.count;
+      const Vector3& span = last ? leg.tip : mechanism.joints()[static_cast<size_t>(j) + 1].offset;
+      const bool beam = std::any_of(mechanism.beams().begin(), mechanism.beams().end(),
+                                    [j](const BeamModel& one) { return one.joint == j; });
+      if (beam || span.norm() < 1e-9) continue;
+      names += (names.empty() ? "" : ", ") + mechanism.joint_names()[static_cast<size_t>(j)];
+    }
+  }
+  return names;
+}
+
+void show_felt(const Situation& at, const Compliance& give, const char* label, const char* note,
+               Answer& answer) {
+  const auto felt = felt_stiffness(at.mechanism, give);
+  if (!felt || at.frame.linear() != at.mechanism.linear_rows() || felt->rows() != at.mechanism.tool_rows())
+    return;
+  const ToolMatrix K = at.frame.turn * *felt * at.frame.turn.transpose();
+  const int linear = at.frame.linear();
+  const std::vector<std::string> names = at.frame.names();
+  if (linear > 0) {
+    answer.columns({names.begin(), names.begin() + linear});
+    answer.cells(label, Eigen::VectorXd(K.diagonal().head(linear)), 1e-3, note);
+  }
+}
+
+}  // namespace
+
+void write_stiffness(const Situation& at, Answer& answer) {
+  const Elastic state = elastic(at);
+  const double length = at.mechanism.characteristic_length();
+  if (!state.best()) {
+    for (const char* key : {"stiffness", "stiffness_with_drives", "compliance"})
+      answer.undefined(key, kNoBeams);
+    answer.page().row("stiffness", "not given by the source", "no section of a link, no drive's stiffness");
+    return;
+  }
+  if (state.links) {
+    answer.put("stiffness", json_array(turned(at, state.links->matrix, state.links->rows)));
+    show_felt(at, compliance(*state.links, length), "stiffness [N/mm]", "drives held, as if rigid", answer);
+    const std::string rigid = rigid_links(at.mechanism);
+    if (!rigid.empty()) answer.page().row("", fmt::format("links without a section count as rigid: {}", rigid));
+  } else {
+    answer.undefined("stiffness", "not given by the source: links without a section count as rigid");
+  }
+  if (state.with_drives) {
+    answer.put("stiffness_with_drives",
+               json_array(turned(at, state.with_drives->matrix, state.with_drives->rows)));
+    show_felt(at, compliance(*state.with_drives, length), "  with the drives' own [N/mm]", "motors held",
+              answer);
+  } else {
+    answer.undefined("stiffness_with_drives", "not given by the source: the stiffness of some drive");
+  }
+
+  const Stiffness& own = state.links ? *state.links : *state.with_drives;
+  const Compliance give = compliance(own, length);
+  if (give.free) {
+    answer.undefined("compliance", free_text(at, give));
+  } else {
+    answer.put("compliance", json_array(turned(at, give.matrix, own.rows)));
+  }
+}
+
+void write_deflection(const Situation& at, Answer& answer) {
+  if (!at.load) return;
+  const Elastic state = elastic(at);
+  if (!state.best()) {
+    answer.undefined("deflection", kNoBeams);
+    return;
+  }
+  const Stiffness& own = state.links ? *state.links : *state.with_drives;
+  const Compliance give = compliance(own, at.mechanism.characteristic_length());
+  // The hand pushes with what the device exerts on it.
+  const Vector6 push = -at.mechanism.six_components(ToolVector(at.frame.turn.transpose() * *at.load));
+  if (give.free) {
+    answer.undefined("deflection", free_text(at, give));
+    return;
+  }
+  Vector6 moved = give.matrix * push;
+  moved.head<3>() = (at.frame.R * moved.head<3>()).eval();
+  moved.tail<3>() = (at.frame.R * moved.tail<3>()).eval();
+  answer.put("deflection", json_array(Eigen::VectorXd(moved.head(own.rows))));
+  answer.axes();
+  answer.cells("deflection under the load [µm]", Eigen::VectorXd(moved.head<3>()), 1e6, "as the hand pushes");
+  if (own.rows == 6) answer.cells("  turned by [mrad]", Eigen::VectorXd(moved.tail<3>()), kMilli);
+}
+
+void write_compliance_shares(const Situation& at, Answer& answer) {
+  const Elastic state = elastic(at);
+  if (!state.best()) {
+    answer.undefined("compliance_shares", kNoBeams);
+    return;
+  }
+  const Compliance give = compliance(*state.best(), at.mechanism.characteristic_length());
+  std::vector<ComplianceShares> shares;
+  for (Eigen::Index r = 0; r < static_cast<Eigen::Index>(at.frame.axes.size()); ++r) {
+    const ToolVector axis =
+        at.frame.turn.transpose() * ToolVector::Unit(static_cast<Eigen::Index>(at.frame.axes.size()), r);
+    const auto of_axis = compliance_shares(at.posture, *state.best(), give, at.mechanism.six_components(axis),
+                                           state.best_options());
+    if (!of_axis) {
+      answer.undefined("compliance_shares", free_text(at, give));
+      return;
+    }
+    shares.push_back(*of_axis);
+  }
+  constexpr double kWorthALine = 0.05;
+  Json entries = Json::array();
+  const auto row = [&](const char* kind, const std::string& name, auto value_of) {
+    Eigen::VectorXd values(static_cast<Eigen::Index>(shares.size()));
+    for (size_t r = 0; r < shares.size(); ++r) values[static_cast<Eigen::Index>(r)] = value_of(shares[r]);
+    entries.push_back(Json{{"kind", kind}, {"name", name}, {"shares", json_array(values)}});
+    if (values.maxCoeff() < kWorthALine) return;
+    answer.columns(at.frame.names());
+    answer.cells(fmt::format("give of {} {} [%]", kind, name), values, 100.0, "", 3, 1e-9);
+  };
+  const auto& beams = at.mechanism.beams();
+  for (size_t b = 0; b < beams.size(); ++b) {
+    row("link", at.mechanism.joint_names()[static_cast<size_t>(beams[b].joint)],
+        [b](const ComplianceShares& one) { return one.beams[b]; });
+  }
+  if (state.with_drives) {
+    for (int i = 0; i < at.mechanism.active_count(); ++i) {
+      if (at.mechanism.is_free(i)) continue;
+      row("drive", at.mechanism.active_names()[static_cast<size_t>(i)],
+          [i](const ComplianceShares& one) { return one.drives[static_cast<size_t>(i)]; });
+    }
+  }
+  answer.put("compliance_shares", entries);
+}
+
+namespace {
+
+Json modes_entry(const Situation& at, const Modes& modes) {
+  Json entry;
+  entry["frequencies"] = json_array(modes.frequencies);
+  entry["shapes"] = json_array(Eigen::MatrixXd(at.frame.turn * modes.shapes));
+  return entry;
+}
+
+void show_frequencies(const char* label, const Modes& modes, const char* note, Answer& answer) {
+  std::vector<std::string> names;
+  for (Eigen::Index i = 0; i < modes.frequencies.size(); ++i) names.push_back(fmt::format("mode {}", i + 1));
+  answer.columns(names);
+  answer.cells(label, modes.frequencies, 0.5 / 3.14159265358979323846, note);
+}
+
+}  // namespace
+
+void write_natural_frequencies(const Situation& at, Answer& answer) {
+  const Elastic state = elastic(at);
+  if (!state.best()) {
+    answer.page().row("natural frequencies", "not given by the source", "as the stiffness");
+    answer.undefined("natural_frequencies", kNoBeams);
+    return;
+  }
+  ActiveMatrix links = mass_matrix(at.posture, at.rates);
+  links.diagonal() -= at.mechanism.drive_inertia();
+  const double largest = links.diagonal().cwiseAbs().maxCoeff();
+  if (!(links.diagonal().minCoeff() > 1e-9 * largest)) {
+    answer.page().row("natural frequencies", "not given by the source", "the mass that some joint moves");
+    answer.undefined("natural_frequencies", "not given by the source: the mass that some joint moves");
+    return;
+  }
+  const ToolMatrix mobility = tool_mobility(at.rates.tool, links);
+  Json entry;
+  const auto felt =
+      felt_stiffness(at.mechanism, compliance(*state.best(), at.mechanism.characteristic_length()));
+  const std::optional<Modes> held = felt ? modes_by_mobility(*felt, mobility) : std::nullopt;
+  if (!held) {
+    answer.undefined("natural_frequencies", "the tool is free along some direction");
+    return;
+  }
+  entry["stiffness_of"] = state.best_of();
+  entry["held"] = modes_entry(at, *held);
+  show_frequencies("motors held [Hz]", *held, state.best_of(), answer);
+  if (at.mechanism.drive_inertia().minCoeff() > 0.0) {
+    const ActiveMatrix rotors = at.mechanism.drive_inertia().asDiagonal();
+    const auto free = modes_by_mobility(*felt, mobility + tool_mobility(at.rates.tool, rotors));
+    entry["free"] = free ? modes_entry(at, *free) : Json(nullptr);
+    if (free) show_frequencies("motors free [Hz]", *free, "rotors against tool", answer);
+  } else {
+    entry["free"] = nullptr;
+  }
+  entry["rotation_held"] = nullptr;
+  if (state.links && at.mechanism.linear_rows() == 3 && at.mechanism.tool_rows() == 3) {
+    const ToolMatrix block = state.links->matrix.topLeftCorner<3, 3>();
+    if (const auto index = modes_by_mobility(block, mobility)) {
+      entry["rotation_held"] = modes_entry(at, *index);
+      show_frequencies("  links, no turning [Hz]", *index, "the index of Görgülü 2018", answer);
+    }
+  }
+  answer.put("natural_frequencies", entry);
+}
+
+}  // namespace zwidth::at

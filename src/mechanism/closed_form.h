@@ -33,8 +33,11 @@ class ClosedForm {
   /// Number of solutions of the inverse problem that there may be; 0 where it has no closed form.
   virtual int branch_count() const noexcept = 0;
 
+  /// Whether `inverse` answers what these options ask for; where not, the general solver does.
+  virtual bool covers(const SolveOptions& options) const noexcept;
+
   /// Solution `branch` that brings the tool to a pose; 0 is the device's own, or for a redundant arm the one
-  /// that `options` choose. REQUIRES: 0 <= branch < branch_count().
+  /// that `options` choose. REQUIRES: covers(options), 0 <= branch < branch_count().
   virtual ClosedPosture inverse(const Pose& tool, const SolveOptions& options, int branch) const noexcept = 0;
 };
 

@@ -1,7 +1,7 @@
 #include "zwidth/mechanism/families.h"
 
 #include "zwidth/mechanism/delta.h"
-#include "zwidth/mechanism/positioning_arm.h"
+#include "zwidth/mechanism/posture.h"
 #include "zwidth/mechanism/r_cube.h"
 
 namespace zwidth {
@@ -14,12 +14,16 @@ struct Overload : Functions... {
 
 }  // namespace
 
+bool ClosedForm::covers(const SolveOptions& options) const noexcept {
+  return options.match == Match::pose;
+}
+
 std::shared_ptr<const ClosedForm> closed_form_of(const MechanismDescription& mechanism) {
   return std::visit(Overload{[](const DeltaDescription& delta) { return closed_form_of(delta); },
                              [](const FiveBarDescription& five_bar) { return closed_form_of(five_bar); },
                              [](const RCubeDescription& r_cube) { return closed_form_of(r_cube); },
-                             [](const SerialDescription& arm) { return positioning_closed_form(arm); },
-                             [](const auto&) { return std::shared_ptr<const ClosedForm>(); }},
+                             [](const SerialDescription& arm) { return closed_form_of(arm); },
+                             [](const LegsDescription& legs) { return closed_form_of(legs); }},
                     mechanism);
 }
 

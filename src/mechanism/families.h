@@ -34,5 +34,7 @@ std::shared_ptr<const ClosedForm> closed_form_of(const MechanismDescription& mec
 std::shared_ptr<const ClosedForm> closed_form_of(const DeltaDescription& delta);
 std::shared_ptr<const ClosedForm> closed_form_of(const FiveBarDescription& five_bar);
 std::shared_ptr<const ClosedForm> closed_form_of(const RCubeDescription& r_cube);
+std::shared_ptr<const ClosedForm> closed_form_of(const SerialDescription& arm);
+std::shared_ptr<const ClosedForm> closed_form_of(const LegsDescription& legs);  ///< of a serial arm
 
 }  // namespace zwidth

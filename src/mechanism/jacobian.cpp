@@ -10,7 +10,32 @@ namespace zwidth {
 using internal::Closure;
 using internal::ClosureVector;
 
+namespace {
+
+// Of an arm, whose closure has nothing to solve.
+Rates arm_rates(const Posture& posture) noexcept {
+  const Mechanism& mechanism = posture.mechanism();
+  const int n = mechanism.active_count();
+  Rates result;
+  result.tool.setZero(6, n);
+  result.joints.setIdentity(n, n);
+  result.closure = 1.0;
+  for (int j = 0; j < n; ++j) {
+    const Vector3& axis = posture.joint_axis(j);
+    if (mechanism.joints()[j].type == JointType::prismatic) {
+      result.tool.col(j).head<3>() = axis;
+      continue;
+    }
+    result.tool.col(j).head<3>() = axis.cross(posture.tool().position - posture.joint_point(j));
+    result.tool.col(j).tail<3>() = axis;
+  }
+  return result;
+}
+
+}  // namespace
+
 Rates rates(const Posture& posture) noexcept {
+  if (posture.mechanism().serial() != nullptr) return arm_rates(posture);
   return internal::rates_of(posture, Closure(posture));
 }
 
@@ -58,6 +83,12 @@ BiasAcceleration bias_acceleration(const Posture& posture, const Rates& rates,
     }
   }
   BiasAcceleration bias;
+  if (mechanism.serial() != nullptr) {  // nothing else moves
+    bias.tool = Eigen::Map<const Vector6>(w[0].data());
+    bias.tool.tail<3>() /= length;
+    bias.joints.setZero(mechanism.joint_count());
+    return bias;
+  }
   bias.tool.setZero(mechanism.tool_rows());
   bias.joints.setZero(mechanism.joint_count());
   std::array<double, 6> tool;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "zwidth/mechanism/mechanism.h"
+#include "zwidth/mechanism/redundancy.h"
 #include "zwidth/mechanism/sizes.h"
 #include "zwidth/mechanism/solve_status.h"
 
@@ -67,9 +68,11 @@ class Posture {
 struct SolveOptions {
   const Posture* start = nullptr;  ///< follow on from this posture; null starts from the mechanism's home guess
   bool closed_form = true;         ///< use a closed form where there is one; false forces the general solver
-  bool restart = true;       ///< where the way from the start is lost, look for another: slow if there is none
-  double tolerance = 1e-12;  ///< on the loop closure, relative to the characteristic length
-  int max_iterations = 200;  ///< Newton steps in all, over every step of the way from the start
+  bool restart = true;        ///< where the way from the start is lost, look for another: slow if there is none
+  double tolerance = 1e-12;   ///< on the loop closure, relative to the characteristic length
+  int max_iterations = 200;   ///< Newton steps in all, over every step of the way from the start
+  Match match = Match::pose;  ///< what an inverse has to meet; `position` alone only of a serial arm
+  Redundancy redundancy = {};  ///< which of its postures an arm with joints to spare takes
 };
 
 /// What solving came to.
@@ -93,15 +96,18 @@ struct Solution {
 Solution solve_forward(const Mechanism& mechanism, const ActiveVector& active,
                        const SolveOptions& options = {});
 
-/// The posture that brings the tool to a pose, nearest to the start (closed form: the device's own branch).
-/// A mechanism that only translates ignores the rotation. A pose that only another assembly mode reaches is
-/// unreachable, unless a joint would be beyond its range anyway: that is joint_limit; with a start the posture
-/// follows that, and its mode is not looked at. REQUIRES: all finite.
+/// The posture that brings the tool to a pose, nearest to the start (closed form: the device's own branch); of
+/// an arm with joints to spare, as `SolveOptions::redundancy` says. A mechanism that only translates ignores
+/// the rotation. A pose that only another assembly mode reaches is unreachable, unless a joint would be beyond
+/// its range anyway: that is joint_limit; with a start the posture follows that, and its mode is not looked at.
+/// REQUIRES: all finite; `match` is pose unless mechanism.serial(); a joint to keep is one of the active ones.
 Solution solve_inverse(const Mechanism& mechanism, const Pose& tool, const SolveOptions& options = {});
 
 /// Every posture that brings the tool to a pose, one per combination of the legs' roots, other assembly modes
-/// included; first those of the mechanism's own within the joint ranges. Empty if unreachable. The general
-/// solver searches from seeded starts, so it may miss a root of a leg with more than three joints. Allocates.
+/// included; first those of the mechanism's own within the joint ranges. Of an arm with joints to spare every
+/// one that the rule singles out: with a joint kept every posture, else the best of each branch. Empty if
+/// unreachable. The general solver searches from seeded starts, so it may miss a root of a leg with more than
+/// three joints. Allocates.
 std::vector<Solution> solve_inverse_all(const Mechanism& mechanism, const Pose& tool,
                                         const SolveOptions& options = {});
 

@@ -5,7 +5,9 @@
 #include <limits>
 #include <numbers>
 
+#include "zwidth/mechanism/internal/arm_solver.h"
 #include "zwidth/mechanism/internal/closure.h"
+#include "zwidth/mechanism/internal/joint_values.h"
 #include "zwidth/mechanism/internal/posture_builder.h"
 #include "zwidth/mechanism/posture.h"
 
@@ -18,14 +20,14 @@ using internal::Closure;
 using internal::closure_column;
 using internal::closure_error;
 using internal::ClosureVector;
+using internal::kLimitTolerance;
 using internal::PostureBuilder;
 
 namespace {
 
-constexpr double kSingular = 1e-4;        // reciprocal conditions below this make a posture degraded
-constexpr double kLimitTolerance = 1e-9;  // [rad] or [m]
-constexpr double kLongestStep = 0.4;      // of what leads the way: active joints [rad, characteristic lengths]
-constexpr double kShortestStep = 1e-3;    // share of the way; a shorter step that fails ends the search
+constexpr double kSingular = 1e-4;      // reciprocal conditions below this make a posture degraded
+constexpr double kLongestStep = 0.4;    // of what leads the way: active joints [rad, characteristic lengths]
+constexpr double kShortestStep = 1e-3;  // share of the way; a shorter step that fails ends the search
 constexpr double kLargestCorrection = 1.5;  // of a joint within one step; more is a jump to another branch
 constexpr double kLoose = 1e-5;             // closure on the way, relative to the characteristic length
 
@@ -489,8 +491,9 @@ Solution closed_inverse(const Mechanism& mechanism, const Pose& tool, const Solv
   ClosedPosture closed = mechanism.closed_form()->inverse(tool, options, branch);
   if (closed.joints.size() == mechanism.joint_count()) {
     for (int i = 0; i < mechanism.active_count(); ++i) {
+      const JointModel& joint = mechanism.joints()[mechanism.active_joint(i)];
       double& q = closed.joints[mechanism.active_joint(i)];
-      q = internal::wrapped(mechanism.joints()[mechanism.active_joint(i)], q);
+      if (!joint.range.contains(q, kLimitTolerance)) q = internal::wrapped(joint, q);
     }
   }
   return closed_solution(mechanism, closed);
@@ -502,6 +505,7 @@ bool stands_elsewhere(const Posture& posture, const SolveOptions& options) {
   constexpr double kSame =
       1e-6;  // of the characteristic length, or rad: a root that cancels loses half the digits
   const Mechanism& mechanism = posture.mechanism();
+  if (mechanism.serial() != nullptr) return false;  // an arm has one posture for its joints
   const Solution driven = solve_forward(mechanism, posture.active(), {.closed_form = options.closed_form});
   if (!driven) return false;
   const Pose &here = posture.tool(), &there = driven.posture->tool();
@@ -518,6 +522,62 @@ Solution own_assembly(Solution solution, const SolveOptions& options) {
   solution.other_assembly = true;
   solution.posture.reset();
   return solution;
+}
+
+// How many branches the closed form has for what is asked; 0 leaves it to the general solver.
+int closed_branches(const Mechanism& mechanism, const SolveOptions& options) {
+  const ClosedForm* closed = mechanism.closed_form();
+  return options.closed_form && closed != nullptr && closed->covers(options) ? closed->branch_count() : 0;
+}
+
+// ------------------------------------------------------------------------------------------------------
+// Arms with joints to spare, and goals of position alone.
+
+bool leaves_joints_open(const Mechanism& mechanism, const SolveOptions& options) {
+  return mechanism.serial() != nullptr && (options.match == Match::position || mechanism.active_count() > 6);
+}
+
+Solution arm_solution(const Mechanism& mechanism, const Pose& tool, const SolveOptions& options,
+                      const internal::ArmAnswer& answer) {
+  Solution solution;
+  solution.residual = answer.residual;
+  if (answer.found) {
+    const Pose reached = options.match == Match::position ? mechanism.serial()->pose(answer.joints) : tool;
+    solution =
+        closed_solution(mechanism, {.status = SolveStatus::reached, .joints = answer.joints, .tool = reached});
+    solution.residual = answer.residual;
+  }
+  solution.iterations = answer.iterations;
+  return solution;
+}
+
+// Every answer that the seeds lead to, the best first.
+std::vector<Solution> arm_solutions(const Mechanism& mechanism, const Pose& tool, const SolveOptions& options) {
+  constexpr double kSame = 1e-4;  // [rad] or [m]: what iteration finds of an optimum
+  const internal::ArmSolver solver(mechanism, tool, options);
+  std::vector<internal::ArmAnswer> answers;
+  const auto add = [&](const internal::ArmAnswer& answer) {
+    const auto same = [&](const internal::ArmAnswer& one) {
+      for (int j = 0; j < answer.joints.size(); ++j) {
+        const double apart = one.joints[j] - answer.joints[j];
+        const bool slides = mechanism.joints()[j].type == JointType::prismatic;
+        if (std::abs(slides ? apart : std::remainder(apart, 2.0 * std::numbers::pi)) > kSame) return false;
+      }
+      return true;
+    };
+    if (answer.found && std::none_of(answers.begin(), answers.end(), same)) answers.push_back(answer);
+  };
+  for (int seed = 0; seed <= internal::ArmSolver::kSeeds; ++seed) add(solver.solve_from(seed));
+  if (answers.empty()) add(solver.solve());
+  std::stable_sort(answers.begin(), answers.end(),
+                   [](const internal::ArmAnswer& a, const internal::ArmAnswer& b) {
+                     return a.within != b.within ? a.within : a.objective < b.objective;
+                   });
+  std::vector<Solution> solutions;
+  for (const internal::ArmAnswer& answer : answers) {
+    solutions.push_back(arm_solution(mechanism, tool, options, answer));
+  }
+  return solutions;
 }
 
 }  // namespace
@@ -552,9 +612,11 @@ Solution solve_inverse(const Mechanism& mechanism, const Pose& tool, const Solve
   assert(tool.position.allFinite() && tool.rotation.allFinite());
   Pose wanted = tool;
   if (!mechanism.tool_turns()) wanted.rotation.setIdentity();
-  if (options.closed_form && mechanism.closed_form() != nullptr &&
-      mechanism.closed_form()->branch_count() > 0) {
+  if (closed_branches(mechanism, options) > 0) {
     return own_assembly(closed_inverse(mechanism, wanted, options, 0), options);
+  }
+  if (leaves_joints_open(mechanism, options)) {
+    return arm_solution(mechanism, wanted, options, internal::ArmSolver(mechanism, wanted, options).solve());
   }
   Solution solution = inverse_general(mechanism, wanted, options);
   return options.start == nullptr ? own_assembly(std::move(solution), options) : solution;
@@ -566,9 +628,10 @@ std::vector<Solution> solve_inverse_all(const Mechanism& mechanism, const Pose& 
   std::vector<Solution> solutions;
   Pose wanted = tool;
   if (!mechanism.tool_turns()) wanted.rotation.setIdentity();
-  const int branches =
-      options.closed_form && mechanism.closed_form() != nullptr ? mechanism.closed_form()->branch_count() : 0;
-  if (branches > 0) {
+  const int branches = closed_branches(mechanism, options);
+  if (branches == 0 && leaves_joints_open(mechanism, options)) {
+    solutions = arm_solutions(mechanism, wanted, options);
+  } else if (branches > 0) {
     for (int branch = 0; branch < branches; ++branch) {
       Solution solution = closed_inverse(mechanism, wanted, options, branch);
       if (solution) solutions.push_back(std::move(solution));

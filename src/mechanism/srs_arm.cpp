@@ -406,6 +406,56 @@ SrsAngles srs_on_circle(const SrsLengths& lengths, const Pose& wrist, const SrsE
   return theta;
 }
 
+namespace {
+
+// What vanishes where a joint has an angle, or its other reading; affine in the elbow point e, because on its
+// circle e.r, |e| and |r - e| do not change.
+double off_angle(const SrsLengths& lengths, const Pose& wrist, const Vector3& e, int joint,
+                 const SineCosine& angle) {
+  const double d3 = lengths.upper_arm, d4 = lengths.forearm;
+  const Vector3 &r = wrist.position, f = r - e, u7 = wrist.rotation.col(2);
+  const auto across = [&](double cosine, double sine) { return sine * angle.cosine - cosine * angle.sine; };
+  switch (joint) {
+    case 0:  // the upper arm is d3 (c1 s2, s1 s2, c2)
+      return across(e.x(), e.y());
+    case 1:
+      return e.z() - d3 * angle.cosine;
+    case 2:  // a = d4 c3 s4 and k = d4 s3 s4 (3.16, 3.17), times s2 d3
+      return across(e.z() * e.dot(r) / d3 - d3 * r.z(), e.x() * r.y() - e.y() * r.x());
+    case 4:  // M13 = s6 c5 and M23 = s6 s5, times d3 d4 s4; axis 4 lies along e x f
+      return across(u7.dot(e.cross(f).cross(f)) / d4, u7.dot(e.cross(f)));
+    case 5:
+      return u7.dot(f) - d4 * angle.cosine;
+    default: {  // M31 = -s6 c7 and M32 = s6 s7, times d4
+      const Vector3 h = wrist.rotation.transpose() * f;
+      return across(-h.x(), h.y());
+    }
+  }
+}
+
+}  // namespace
+
+SrsElbows srs_elbows_with(const SrsLengths& lengths, const Pose& wrist, const SrsElbowCircle& circle, int joint,
+                          double angle) noexcept {
+  const SineCosine wanted = sine_cosine(angle);
+  const auto off = [&](const Vector3& arm) {
+    return off_angle(lengths, wrist, circle.centre + arm, joint, wanted);
+  };
+  // a cos + b sin + c, from three elbows.
+  const double ahead = off(circle.cosine_arm), behind = off(-circle.cosine_arm), beside = off(circle.sine_arm);
+  const double a = 0.5 * (ahead - behind), c = 0.5 * (ahead + behind), b = beside - c;
+  const double amplitude = std::sqrt(a * a + b * b);
+  const double size = lengths.upper_arm + lengths.forearm;
+  const double rounding = 1e-14 * (joint == 2 || joint == 4 ? size * size : size);
+  SrsElbows elbows;
+  if (amplitude < rounding || std::abs(c) > amplitude + rounding) return elbows;
+  const double middle = angle_of(a, b),
+               half = angle_of(-c, std::sqrt(std::max(amplitude * amplitude - c * c, 0.0)));
+  elbows.elbow[elbows.count++] = middle + half;
+  if (half > 0.0 && half < kPi) elbows.elbow[elbows.count++] = middle - half;
+  return elbows;
+}
+
 Interval srs_reach(const SrsLengths& lengths, const Interval& theta4) noexcept {
   const double d3 = lengths.upper_arm, d4 = lengths.forearm;
   const auto holds = [&](double angle) {  // some whole number of turns from it
@@ -529,18 +579,22 @@ std::array<SrsSingularity, 4> srs_singularities(const SrsAngles& theta) noexcept
   const double t2 = from_half_turns(theta[1]), t3 = from_quarter_turn(theta[2]), t4 = from_half_turns(theta[3]),
                t5 = from_quarter_turn(theta[4]), t6 = from_half_turns(theta[5]);
   return {{{.name = "elbow",
+            .what = "the arm is stretched or folded",
             .where = "theta4 = 0 or 180 deg",
             .carried = "a force along the line from shoulder to wrist",
             .distance = t4},
            {.name = "shoulder",
+            .what = "the upper arm lies along axis 1, with axis 4 at right angles to axis 2",
             .where = "theta2 = 0 or 180 deg and theta3 = +-90 deg",
             .carried = "a force along the forearm",
             .distance = std::hypot(t2, t3)},
            {.name = "wrist",
+            .what = "axis 7 lies along the forearm, with axis 6 at right angles to axis 4",
             .where = "theta6 = 0 or 180 deg and theta5 = +-90 deg",
             .carried = "a force along the upper arm",
             .distance = std::hypot(t6, t5)},
            {.name = "shoulder and wrist",
+            .what = "the upper arm lies along axis 1, and axis 7 along the forearm",
             .where = "theta2 = 0 or 180 deg and theta6 = 0 or 180 deg",
             .carried = "a force and a moment along a screw that depends on the posture",
             .distance = std::hypot(t2, t6)}}};

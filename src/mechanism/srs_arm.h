@@ -12,7 +12,7 @@
 /// Base frame: origin in the shoulder, z along axis 1. With all angles zero the arm is stretched along z, axes
 /// 1, 3, 5, 7 lie along it and axes 2, 4, 6 along y:  C = Rz(t1) Ry(t2) Rz(t3) Ry(t4) Rz(t5) Ry(t6) Rz(t7). Any
 /// lengths; everything here is noexcept and allocates nothing. Arms that differ by where base, tool and the
-/// zeros of the joints lie are brought to this form by `SerialChain`'s closed form.
+/// zeros of the joints lie are brought to this form by the closed form of their `Mechanism`.
 
 namespace zwidth {
 
@@ -94,6 +94,18 @@ SrsElbowCircle srs_elbow_circle(const SrsLengths& lengths, const Vector3& wrist)
 SrsAngles srs_on_circle(const SrsLengths& lengths, const Pose& wrist, const SrsElbowCircle& circle,
                         double elbow, int branch, const SrsAngles& near) noexcept;
 
+/// Where on its circle the elbow is if a joint has a given angle.
+struct SrsElbows {
+  int count = 0;                  ///< 0, 1 or 2
+  std::array<double, 2> elbow{};  ///< angles on the circle [rad]
+};
+/// `joint` is 0..6 for theta1..theta7, without theta4, which is the same everywhere on the circle. The joint
+/// has the angle on some of the eight branches there, on the others the angle's other reading (theta + pi, or
+/// -theta of theta2 and theta6). Nothing where the joint does not change along the circle. REQUIRES: as above;
+/// joint is not 3.
+SrsElbows srs_elbows_with(const SrsLengths& lengths, const Pose& wrist, const SrsElbowCircle& circle, int joint,
+                          double angle) noexcept;
+
 // ------------------------------------------------------------------------------------------------------- reach
 
 /// Distances of the wrist from the shoulder that an elbow within a range allows [m].
@@ -130,6 +142,7 @@ class SrsReach {
 /// A set of postures in which the Jacobian loses rank.
 struct SrsSingularity {
   std::string_view name;   ///< "elbow", "shoulder", "wrist" or "shoulder and wrist"
+  std::string_view what;   ///< the same in words, whatever zeros the joints have
   std::string_view where;  ///< "theta4 = 0 or 180 deg"
   std::string_view
       carried;            ///< load that the links then carry without any torque: the tool cannot move along it

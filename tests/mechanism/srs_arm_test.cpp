@@ -252,6 +252,34 @@ TEST(SrsElbow, EveryBranchOfEveryElbowReachesThePose) {
   }
 }
 
+// A joint that is asked for its own angle leads to the posture that it came from, on one of two elbows.
+TEST(SrsElbow, IsWhereAJointHasTheAngleAskedFor) {
+  std::mt19937_64 random(9);
+  for (int n = 0; n < test::storm_size(5000); ++n) {
+    const SrsLengths lengths = random_lengths(random);
+    const SrsAngles theta = random_angles(random);
+    if (!regular(theta)) continue;
+    const Pose wrist = srs_forward(lengths, theta).wrist;
+    const SrsElbowCircle circle = srs_elbow_circle(lengths, wrist.position);
+    const double own = circle.angle_of_elbow(lengths, theta);
+    for (const int joint : {0, 1, 2, 4, 5, 6}) {
+      const SrsElbows elbows = srs_elbows_with(lengths, wrist, circle, joint, theta[joint]);
+      double nearest = 10.0;
+      for (int e = 0; e < elbows.count; ++e) {
+        nearest = std::min(nearest, std::abs(std::remainder(elbows.elbow[e] - own, 2.0 * kPi)));
+        int branches = 0;
+        for (int branch = 0; branch < 8; ++branch) {
+          const SrsAngles there = srs_on_circle(lengths, wrist, circle, elbows.elbow[e], branch, theta);
+          branches += std::abs(std::remainder(there[joint] - theta[joint], 2.0 * kPi)) < 1e-6 ? 1 : 0;
+        }
+        EXPECT_GE(branches, 2);
+      }
+      // Where the joint turns back, an elbow is known to half the digits.
+      EXPECT_LT(nearest, 1e-6);
+    }
+  }
+}
+
 TEST(SrsElbow, AStretchedArmKeepsTheAnglesLeftOpen) {
   const SrsAngles theta = {0.0, 0.5 * kPi, -0.4, 0.0, 0.5, 0.9, -0.7};
   Pose wrist = srs_forward(kPublished, theta).wrist;

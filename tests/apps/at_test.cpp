@@ -2,6 +2,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <set>
 #include <sstream>
@@ -430,6 +431,167 @@ TEST(At, StiffnessTurnsWithTheFrame) {
   }
   EXPECT_NEAR(trace_U / trace_K, 1.0, 1e-12);
   EXPECT_GT(difference(K, U), 1e-3 * trace_K);
+}
+
+// ------------------------------------------------------------------------------------------ arms
+
+const std::vector<std::string> kPose = {"--position", "0.35,0.05,0.1", "--orientation", "0,90deg,0"};
+
+Outcome at_seven_dof(std::vector<std::string> more, const char* device = "seven-dof") {
+  std::vector<std::string> arguments{"at", device};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return run(arguments);
+}
+std::vector<std::string> pose_and(std::vector<std::string> more) {
+  std::vector<std::string> arguments = kPose;
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(AtArm, EveryWayToChooseAPostureReachesThePose) {
+  const json wanted_rotation = {{0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}};
+  for (const std::vector<std::string>& choice : {std::vector<std::string>{"--keep", "theta3=10deg"},
+                                                 {"--keep", "theta1=5deg"},
+                                                 {"--keep", "theta2=40deg"},
+                                                 {"--keep", "theta6=40deg"},
+                                                 {"--near", "home"},
+                                                 {"--near", "0.1,0.6,0.2,1.5,3,0.5,3"},
+                                                 {"--maximise", "manipulability"},
+                                                 {"--maximise", "inverse_condition"},
+                                                 {"--maximise", "limit_distance"}}) {
+    std::vector<std::string> more = choice;
+    more.push_back("--json");
+    const Outcome outcome = at_seven_dof(pose_and(more));
+    const json document = outcome.json();
+    ASSERT_TRUE(document.contains("joints")) << choice[1] << outcome.err;
+    EXPECT_LT(difference(document["position"], json({0.35, 0.05, 0.1})), 1e-12) << choice[1];
+    EXPECT_LT(difference(document["orientation"], wanted_rotation), 1e-12) << choice[1];
+    EXPECT_EQ(document["choice"]["spare_joints"], 1);
+    EXPECT_EQ(document["choice"]["rule"], choice[0] == "--near" ? "nearest" : choice[0].substr(2));
+    expect_finite(document, "");
+    // The posture is one of those listed, the first.
+    EXPECT_LT(difference(document["solutions"][0]["joints"], document["joints"]), 1e-9) << choice[1];
+  }
+}
+
+TEST(AtArm, AJointKeptHasItsValueInEverySolution) {
+  const json document = at_seven_dof(pose_and({"--keep", "theta3=10deg", "--json"})).json();
+  ASSERT_EQ(document["solutions"].size(), 8u);
+  for (const json& solution : document["solutions"]) {
+    EXPECT_NEAR(std::remainder(solution["joints"][2].get<double>() - 10.0 * std::numbers::pi / 180.0,
+                               2.0 * std::numbers::pi),
+                0.0, 1e-9);
+  }
+  EXPECT_NEAR(document["choice"]["value"].get<double>(), 10.0 * std::numbers::pi / 180.0, 1e-9);
+}
+
+TEST(AtArm, OrientationsInAllFormsAreTheSame) {
+  const json angles = at_seven_dof(pose_and({"--near", "home", "--json"})).json();
+  for (const std::vector<std::string>& form :
+       {std::vector<std::string>{"--orientation", "0.70710678,0,0.70710678,0"},
+        {"--rotation", "0,0,1,0,1,0,-1,0,0"}}) {
+    std::vector<std::string> more{"--position", "0.35,0.05,0.1", "--near", "home", "--json"};
+    more.insert(more.end(), form.begin(), form.end());
+    EXPECT_LT(difference(at_seven_dof(more).json()["joints"], angles["joints"]), 1e-7) << form[0];
+  }
+  // What one answer says is what the next may ask.
+  std::string rotation;
+  for (const json& row : angles["orientation"]) {
+    for (const json& value : row) {
+      if (!rotation.empty()) rotation += ',';
+      rotation += value.dump();
+    }
+  }
+  const json again =
+      at_seven_dof({"--position", "0.35,0.05,0.1", "--rotation", rotation, "--near", "home", "--json"}).json();
+  EXPECT_LT(difference(again["joints"], angles["joints"]), 1e-9);
+}
+
+TEST(AtArm, APoseThatLeavesAJointOpenIsRefusedWithTheRemedy) {
+  const Outcome outcome = at_seven_dof(kPose);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.out, "");
+  for (const char* remedy : {"--keep theta3", "--near", "--maximise manipulability"})
+    EXPECT_NE(outcome.err.find(remedy), std::string::npos) << remedy;
+}
+
+TEST(AtArm, APositionAloneTakesThePostureNearestToHome) {
+  const json document = at_seven_dof({"--position", "0.35,0.05,0.1", "--json"}).json();
+  EXPECT_EQ(document["status"], "reached");
+  EXPECT_LT(difference(document["position"], json({0.35, 0.05, 0.1})), 1e-12);
+  EXPECT_EQ(document["choice"]["rule"], "nearest");
+  EXPECT_EQ(document["choice"]["spare_joints"], 4);
+  for (size_t j = 4; j < 7; ++j)  // the wrist has no part in it
+    EXPECT_NEAR(document["joints"][j].get<double>(), 0.5 * std::numbers::pi, 1e-12);
+}
+
+TEST(AtArm, WhatIsWrongIsNamedWithItsRule) {
+  struct Case {
+    std::vector<std::string> arguments;
+    const char* says;
+  };
+  for (const Case& one : std::vector<Case>{
+           {{"--position", "0.35,0.05,0.1", "--rotation", "1,0,0,0,1,0,0,0,1.1", "--near", "home"}, "R^T R"},
+           {{"--position", "0.35,0.05,0.1", "--rotation", "1,0,0,0,1,0,0,0,-1", "--near", "home"}, "mirrors"},
+           {{"--position", "0.35,0.05,0.1", "--rotation", "1,0,0", "--near", "home"}, "9 are expected"},
+           {{"--position", "0.35,0.05,0.1", "--orientation", "1,0,0,0.2", "--near", "home"}, "length 1"},
+           {{"--position", "0.35,0.05,0.1", "--orientation", "0,90kg,0", "--near", "home"},
+            "an angle was expected"},
+           {pose_and({"--keep", "theta8"}), "there is no joint"},
+           {pose_and({"--keep", "theta3=1kg"}), "an angle was expected"},
+           {pose_and({"--keep", "theta3", "--maximise", "manipulability"}), "give one"},
+           {pose_and({"--maximise", "speed"}), "limit_distance"},
+           {pose_and({"--near", "1,2,3"}), "7 are expected"},
+           {{"--joints", "0,1,0,1,1,1,1", "--keep", "theta3"}, "goes with --position"}}) {
+    const Outcome outcome = at_seven_dof(one.arguments);
+    EXPECT_EQ(outcome.status, 2) << one.says;
+    EXPECT_NE(outcome.err.find(one.says), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+  }
+  EXPECT_EQ(run({"at", "delta", "--position", "0,0,0.15", "--orientation", "0,0,0"}).status, 2);
+  EXPECT_EQ(run({"at", "delta", "--position", "0,0,0.15", "--keep", "leg1"}).status, 2);
+  EXPECT_EQ(at_seven_dof(pose_and({"--keep", "theta4"}), "seven-dof-locked").status, 2);
+}
+
+TEST(AtArm, AJointThatTheGoalDecidesCannotBeKept) {
+  const Outcome outcome = at_seven_dof(pose_and({"--keep", "theta4=1", "--json"}));
+  EXPECT_EQ(outcome.status, 1);
+  const std::string reason = outcome.json()["reason"];
+  EXPECT_NE(reason.find("does not move while the tool is held"), std::string::npos) << reason;
+}
+
+TEST(AtArm, ItsFourSingularitiesAreNamed) {
+  struct Case {
+    const char* joints;
+    const char* name;
+  };
+  for (const Case& one : {Case{"0.1,75deg,0.2,0,30deg,40deg,0.3", "elbow"},
+                          {"0.1,0,90deg,80deg,30deg,40deg,0.3", "shoulder"},
+                          {"0.1,75deg,0.2,80deg,90deg,0,0.3", "wrist"},
+                          {"0.1,0,0.2,80deg,30deg,180deg,0.3", "shoulder and wrist"}}) {
+    const Outcome outcome =
+        at_seven_dof({"--set", R"(joint[1].range=["-180 deg", "180 deg"])", "--set",
+                      R"(joint[2].range=["-180 deg", "180 deg"])", "--set",
+                      R"(joint[3].range=["-180 deg", "180 deg"])", "--joints", one.joints, "--json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const json document = outcome.json();
+    EXPECT_EQ(document["status"], "degraded") << one.name;
+    EXPECT_EQ(document["singularity"]["names"], json({one.name}));
+    EXPECT_EQ(document["singularity"]["weak_direction"].size(), 6u);
+    expect_finite(document, "");
+  }
+  const json regular = at_seven_dof({"--joints", "0.1,75deg,0.2,80deg,30deg,40deg,0.3", "--json"}).json();
+  EXPECT_TRUE(regular["singularity"]["names"].empty());
+  EXPECT_EQ(regular["singularity"]["sets"].size(), 4u);
+}
+
+TEST(AtArm, WithTheJointFixedThereAreEightBranchesAndNothingToChoose) {
+  const Outcome outcome = at_seven_dof(pose_and({"--json"}), "seven-dof-locked");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json document = outcome.json();
+  EXPECT_EQ(document["solutions"].size(), 8u);
+  EXPECT_FALSE(document.contains("choice"));
+  EXPECT_EQ(document["singularity"]["sets"].size(), 3u);
 }
 
 }  // namespace

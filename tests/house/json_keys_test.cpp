@@ -47,6 +47,8 @@ TEST(JsonKeys, AreAllDocumented) {
       {"at delta --joints 0.1,0.2,0.3 --load 1,2,3 --rate 1,0,0 --acceleration 0,1,0", {}},
       {"at delta --position 0.02,-0.03,0.12", {}},
       {"at delta --position 0,0,1", {}},
+      {"at seven-dof --position 0.3,0,0.1 --orientation 0,0,0 --keep theta3", {}},
+      {"at seven-dof --position 0.3,0,0.1 --maximise manipulability", {}},
       {"workspace delta --grid 5mm --all-figures", {}},
       {"size delta", {}},
       {"size pneumatic-3 --load 1,0,2", {}},

@@ -15,17 +15,29 @@ int run_at(const at::Arguments& arguments, const Terminal& terminal) {
     throw InputError(
         "give either --joints (e.g. --joints 10deg,20deg,30deg) or --position (e.g. --position 0,0,150mm)");
   }
+  for (const auto& [option, value] : {std::pair("--orientation", &arguments.orientation),
+                                      {"--rotation", &arguments.rotation},
+                                      {"--keep", &arguments.keep},
+                                      {"--near", &arguments.near},
+                                      {"--maximise", &arguments.maximise}}) {
+    if (!value->empty() && arguments.position.empty())
+      throw InputError(
+          fmt::format("{} {}: goes with --position; joint values leave nothing open", option, *value));
+  }
   at::check_only(arguments.only);
   const Model model(read_device(arguments));
   const at::Frame frame = at::frame_of(arguments, model.description, model.mechanism);
-  at::Found found = at::find_posture(model, arguments, frame);
+  at::Found found;
+  at::find_posture(model, arguments, frame, found);
   const char* status = to_string(found.solution.status);
 
   at::Answer answer(terminal, arguments.only);
   answer.put("device", model.description.name);
   answer.put("status", status);
   answer.put("frame", arguments.frame);
-  const std::string& where = arguments.joints.empty() ? arguments.position : arguments.joints;
+  std::string where = arguments.joints.empty() ? arguments.position : arguments.joints;
+  if (!arguments.orientation.empty()) where += ", turned " + arguments.orientation;
+  if (!arguments.rotation.empty()) where += ", turned " + arguments.rotation;
   answer.page().title(
       fmt::format("{} at {}", model.description.name, where),
       arguments.frame == "user" ? "user's frame: x to the user, y right, z up" : "device frame");
@@ -33,12 +45,13 @@ int run_at(const at::Arguments& arguments, const Terminal& terminal) {
                     : found.solution.status == SolveStatus::degraded ? Tint::warning
                                                                      : Tint::good;
   answer.page().row("status", tinted(terminal, tint, status));
+  at::write_choice(found, model, answer);
   if (!found.reason.empty()) answer.page().paragraph(found.reason, 2, Tint::bad);
 
   if (found.solution) at::write_sections(at::Situation(model, arguments, frame, found.solution), answer);
   if (!arguments.position.empty()) {
     at::write_branches(found, model, answer);
-    if (!found.reached()) at::write_nearest(found, model, arguments, frame, answer);
+    if (!found.reached() && !found.kept_in_vain) at::write_nearest(found, model, arguments, frame, answer);
   }
   if (!found.reason.empty()) answer.put("reason", found.reason);
   if (arguments.json) {
@@ -59,15 +72,39 @@ void add_at(CLI::App& app, Context& context) {
       "  zwidth at delta --position 20mm,-30mm,120mm          with every branch of the inverse kinematics\n"
       "  zwidth at delta --joints 0,0,0 --load 1,2,3 --json   torques for a force on the hand\n"
       "  zwidth at delta --position 0,0,0.15 --only position,force_limits\n"
+      "  zwidth at seven-dof --position 0.35,0.05,0.1         the posture nearest to home, however the tool "
+      "turns\n"
+      "  zwidth at seven-dof --position 0.35,0.05,0.1 --orientation 0,90deg,0 --keep theta3=10deg\n"
       "\nThe load is the force that the device exerts on the user's hand, so torques = gravity_torques + J^T "
       "load\n"
-      "(at rest). Numbers without a unit are SI: metres, radians, newtons.");
+      "(at rest). Numbers without a unit are SI: metres, radians, newtons.\n"
+      "\nAn orientation is R = Rz(yaw) Ry(pitch) Rx(roll), about the fixed axes of the frame, or a quaternion; "
+      "R's\n"
+      "columns are the axes of the tool, as the answer's. Without one an arm of one leg may turn its tool as "
+      "it\n"
+      "likes. Joints that the goal leaves open are chosen by --keep, --near or --maximise: for a position "
+      "alone the\n"
+      "posture nearest to home is the default, a pose of an arm with joints to spare must be given one.");
   auto arguments = std::make_shared<at::Arguments>();
   add_device_arguments(*verb, *arguments);
   verb->add_option("--joints", arguments->joints, "values of the active joints, between commas")
       ->type_name("A,B,...");
   verb->add_option("--position", arguments->position, "position of the tool; X,Y of one that moves in a plane")
       ->type_name("X,Y,Z");
+  verb->add_option("--orientation", arguments->orientation,
+                   "orientation of the tool: angles ROLL,PITCH,YAW or a quaternion W,X,Y,Z")
+      ->type_name("A,B,C[,D]");
+  verb->add_option("--rotation", arguments->rotation, "the same as a matrix: nine numbers, row by row")
+      ->type_name("R11,R12,...");
+  verb->add_option(
+          "--keep", arguments->keep,
+          "of an arm with joints to spare: hold this joint, at a value or where it is in --near or home")
+      ->type_name("JOINT[=VALUE]");
+  verb->add_option("--near", arguments->near, "take the posture nearest to these joint values, or to home")
+      ->type_name("A,B,...");
+  verb->add_option("--maximise", arguments->maximise,
+                   "take the posture with the largest manipulability, inverse_condition or limit_distance")
+      ->type_name("FIGURE");
   verb->add_option("--load", arguments->load, "force that the device exerts on the hand")
       ->type_name("FX,FY,FZ");
   verb->add_option("--rate", arguments->rate, "rates of the active joints")->type_name("A,B,...");

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include "section.h"
 
 #include "zwidth/analysis/dexterity.h"
+#include "zwidth/mechanism/arm_singularities.h"
 #include "zwidth/mechanism/delta.h"
 #include "zwidth/mechanism/five_bar.h"
 
@@ -163,6 +165,36 @@ void write_five_bar(const FiveBarDescription& five_bar, const Situation& at, Jso
               "0: the elbows coincide, or the couplers are in line");
 }
 
+/// Which of its singularities an arm with a shoulder, an elbow and a wrist is at or near, and how far it is
+/// from each.
+void write_arm(const Situation& at, Json& entry, Answer& answer) {
+  const std::vector<SrsSingularity> sets = arm_singularities(at.posture);
+  if (sets.empty()) return;
+  constexpr double kNear = 1e-3;  // [rad]
+  const auto nearest = std::min_element(sets.begin(), sets.end(),
+                                        [](const auto& a, const auto& b) { return a.distance < b.distance; });
+  const bool singular = at.singularity.loses || at.status == SolveStatus::degraded;
+  Json names = Json::array(), list = Json::array();
+  std::vector<std::vector<std::string>> rows;
+  for (auto set = sets.begin(); set != sets.end(); ++set) {
+    list.push_back({{"name", set->name},
+                    {"what", set->what},
+                    {"where", set->where},
+                    {"distance", json_number(set->distance)}});
+    rows.push_back({std::string(set->name), fmt::format("{}°", number(set->distance * kDegrees, 4)),
+                    std::string(set->where)});
+    if (set->distance >= kNear && !(singular && set == nearest)) continue;
+    names.push_back(set->name);
+    answer.page().paragraph(
+        fmt::format("{} the {} singularity: {} ({}). The links then carry {} without any torque.",
+                    set->distance < 1e-6 ? "At" : "Near", set->name, set->what, set->where, set->carried),
+        2, Tint::warning);
+  }
+  entry["names"] = names;
+  entry["sets"] = list;
+  answer.page().table({"singularity", "distance", "where"}, rows);
+}
+
 }  // namespace
 
 void write_singularity(const Situation& at, Answer& answer) {
@@ -197,9 +229,10 @@ void write_singularity(const Situation& at, Answer& answer) {
                ? "Near a singularity: the tool can move although the joints are held; forces there are hardly "
                  "controlled."
                : "Near a singularity: the tool can hardly move one way.";
-    if (!gains && comparable) {
+    if (!gains && at.singularity.weak.size() > 0) {
+      entry["weak_direction"] = json_array(at.singularity.weak);
       text = fmt::format("Near a singularity: the tool can hardly move along ({}).",
-                         direction_text(dexterity(at.J).weak_direction));
+                         direction_text(at.singularity.weak));
     }
   }
   if (!text.empty()) answer.page().paragraph(text, 2, Tint::warning);
@@ -214,6 +247,7 @@ void write_singularity(const Situation& at, Answer& answer) {
   if (const auto* five_bar = std::get_if<FiveBarDescription>(&at.model.description.mechanism)) {
     write_five_bar(*five_bar, at, entry, answer);
   }
+  write_arm(at, entry, answer);
   answer.put("singularity", entry);
 }
 

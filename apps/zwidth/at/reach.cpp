@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "zwidth/math/svd.h"
 #include "zwidth/mechanism/delta.h"
 
 namespace zwidth::at {
@@ -64,8 +65,36 @@ std::string limits_broken(const Mechanism& mechanism, const Posture& posture) {
   return text;
 }
 
-std::string unsolved(const Found& found, const Mechanism& mechanism, bool by_position) {
+/// Why an arm has no posture with the joint kept that the goal allows otherwise; empty if that is not why.
+std::string kept_in_vain(const Goal& goal, const Mechanism& mechanism) {
+  const Redundancy& rule = goal.options.redundancy;
+  if (rule.rule != Redundancy::Rule::keep) return "";
+  SolveOptions options = goal.options;
+  options.redundancy = {};
+  const Solution without = solve_inverse(mechanism, goal.tool, options);
+  if (!without) return "";
+  const std::string& name = mechanism.active_names()[static_cast<size_t>(rule.joint)];
+  const int joint = mechanism.active_joint(rule.joint);
+  // The self-motion is what the Jacobian's rows leave; a joint that has no part in it follows from the goal.
+  const Posture& posture = *without.posture;
+  Jacobian J = jacobian(posture);
+  if (goal.options.match == Match::position) J = J.topRows(3).eval();
+  const SmallMatrix v = svd(J).v;
+  const double part = v.row(rule.joint).tail(v.cols() - J.rows()).norm();
+  if (part < 1e-9) {
+    return fmt::format(
+        "{} does not move while the tool is held: it is at {} in the posture nearest to {}; keep "
+        "another joint",
+        name, joint_text(mechanism, joint, posture.joints()[joint]), goal.near_text);
+  }
+  return fmt::format("the tool can be there, but not with {}", goal.choice(mechanism));
+}
+
+std::string unsolved(Found& found, const Mechanism& mechanism, bool by_position) {
   std::string reason;
+  if (by_position) reason = kept_in_vain(found.goal, mechanism);
+  found.kept_in_vain = !reason.empty();
+  if (found.kept_in_vain) return reason;
   if (found.solution.status == SolveStatus::degenerate) {
     reason = "the equations leave the posture open here: a joint can turn freely or the legs coincide";
   } else if (by_position && found.solution.other_assembly) {
@@ -73,30 +102,20 @@ std::string unsolved(const Found& found, const Mechanism& mechanism, bool by_pos
         "only another assembly mode reaches this point: driven to those joint values, the device stands "
         "elsewhere";
   } else if (by_position && mechanism.delta()) {
-    reason = delta_reach(*mechanism.delta(), found.target);
+    reason = delta_reach(*mechanism.delta(), found.goal.tool.position);
   } else if (!by_position) {
     reason = "the legs cannot close at these joint values";
   }
-  return reason.empty() ? "the legs cannot reach this point" : reason;
-}
-
-/// The tool's position in the user's frame: three coordinates, or those that a tool held in a plane has.
-Vector3 position_option(const std::string& text, const Frame& frame) {
-  const auto given = std::count(text.begin(), text.end(), ',') + 1;
-  const bool in_plane = frame.linear() == 2 && given == 2;
-  const std::vector<double> values =
-      option_values("--position", text, std::vector<Dimension>(in_plane ? 2 : 3, Dimension::length));
-  Vector3 position = Vector3::Zero();
-  for (size_t i = 0; i < values.size(); ++i)
-    position[in_plane ? frame.axes[i] : static_cast<int>(i)] = values[i];
-  return position;
+  if (!reason.empty()) return reason;
+  const char* what = found.goal.by_orientation ? "pose" : "point";
+  return fmt::format("the {} cannot reach this {}", mechanism.serial() != nullptr ? "arm" : "legs", what);
 }
 
 /// Takes back a posture that does not put the tool where it is asked for: one held in a plane leaves the rest
 /// out.
 void hold_to_target(Found& found, const Mechanism& mechanism) {
   if (!found.solution) return;
-  const double off = (found.solution.posture->tool().position - found.target).norm();
+  const double off = (found.solution.posture->tool().position - found.goal.tool.position).norm();
   if (off <= 1e-6 * mechanism.characteristic_length()) return;
   found.solution.status = SolveStatus::unreachable;
   found.solution.posture.reset();
@@ -107,26 +126,44 @@ void hold_to_target(Found& found, const Mechanism& mechanism) {
 
 }  // namespace
 
-Found find_posture(const Model& model, const Arguments& arguments, const Frame& frame) {
+void find_posture(const Model& model, const Arguments& arguments, const Frame& frame, Found& found) {
   const Mechanism& mechanism = model.mechanism;
   const bool by_position = !arguments.position.empty();
-  Found found;
   if (by_position) {
-    found.target = frame.R.transpose() * position_option(arguments.position, frame);
-    const Pose pose{found.target, Matrix3::Identity()};
-    found.solution = solve_inverse(mechanism, pose);
-    found.solutions = solve_inverse_all(mechanism, pose);
+    read_goal(arguments, mechanism, frame, found.goal);
+    found.solution = solve_inverse(mechanism, found.goal.tool, found.goal.options);
+    found.solutions = solve_inverse_all(mechanism, found.goal.tool, found.goal.options);
     hold_to_target(found, mechanism);
   } else {
     found.solution = solve_forward(mechanism, joint_option("--joints", arguments.joints, mechanism, 0));
   }
-  if (!found.reason.empty()) return found;
+  if (!found.reason.empty()) return;
   if (!found.solution) {
     found.reason = unsolved(found, mechanism, by_position);
   } else if (found.solution.status == SolveStatus::joint_limit) {
     found.reason = limits_broken(mechanism, *found.solution.posture);
   }
-  return found;
+}
+
+void write_choice(const Found& found, const Model& model, Answer& answer) {
+  const Mechanism& mechanism = model.mechanism;
+  if (mechanism.serial() == nullptr || found.goal.spare == 0) return;
+  Json entry = found.goal.choice_json(mechanism);
+  std::string text = found.goal.choice(mechanism);
+  const Redundancy& rule = found.goal.options.redundancy;
+  if (found.solution && rule.rule == Redundancy::Rule::keep)
+    entry["value"] = json_number(found.solution.posture->active()[rule.joint]);
+  if (found.solution && rule.rule == Redundancy::Rule::maximise) {
+    const Posture& posture = *found.solution.posture;
+    std::vector<Interval> ranges;
+    for (int i = 0; i < mechanism.active_count(); ++i) ranges.push_back(mechanism.active_range(i));
+    const double value = redundancy_figure(rule.figure, found.goal.options.match, jacobian(posture),
+                                           posture.active(), ranges, mechanism.characteristic_length());
+    entry["value"] = json_number(value);
+    text += ", " + number(value, 4);
+  }
+  answer.put("choice", entry);
+  if (answer.wants("choice")) answer.page().row("posture", text);
 }
 
 void write_branches(const Found& found, const Model& model, Answer& answer) {
@@ -135,6 +172,7 @@ void write_branches(const Found& found, const Model& model, Answer& answer) {
   Json list = Json::array();
   std::vector<std::vector<std::string>> rows;
   bool others = false;
+  const bool arm = mechanism.serial() != nullptr;  // has one posture for its joints
   for (const Solution& solution : found.solutions) {
     if (!solution) continue;
     Json entry;
@@ -145,7 +183,8 @@ void write_branches(const Found& found, const Model& model, Answer& answer) {
     entry["residual"] = json_number(solution.residual);
     list.push_back(entry);
     others = others || solution.other_assembly;
-    std::vector<std::string> row{to_string(solution.status), solution.other_assembly ? "other" : "own"};
+    std::vector<std::string> row{to_string(solution.status)};
+    if (!arm) row.emplace_back(solution.other_assembly ? "other" : "own");
     for (int i = 0; i < mechanism.active_count(); ++i)
       row.push_back(joint_text(mechanism, mechanism.active_joint(i), solution.posture->active()[i]));
     rows.push_back(row);
@@ -153,7 +192,8 @@ void write_branches(const Found& found, const Model& model, Answer& answer) {
   answer.put("solutions", list);
   if (rows.empty()) return;
   answer.begin("Branches");
-  std::vector<std::string> header{"status", "assembly"};
+  std::vector<std::string> header{"status"};
+  if (!arm) header.emplace_back("assembly");
   header.insert(header.end(), mechanism.active_names().begin(), mechanism.active_names().end());
   answer.page().table(header, rows);
   if (others)
@@ -164,7 +204,7 @@ void write_branches(const Found& found, const Model& model, Answer& answer) {
 void write_nearest(Found& found, const Model& model, const Arguments& arguments, const Frame& frame,
                    Answer& answer) {
   const Mechanism& mechanism = model.mechanism;
-  const auto point = nearest_reachable(mechanism, found.target);
+  const auto point = nearest_reachable(mechanism, found.goal.tool.position);
   if (!point) {
     answer.undefined("nearest_reachable", "no joint values close the legs");
     return;
@@ -176,7 +216,10 @@ void write_nearest(Found& found, const Model& model, const Arguments& arguments,
   entry["distance"] = json_number(point->distance);
   answer.put("nearest_reachable", entry);
   if (point->distance < 1e-9 && found.solution.status == SolveStatus::unreachable) {
-    const std::string turned = "the tool can be there, but not with its axes along those of the base frame";
+    const std::string turned =
+        found.goal.by_orientation
+            ? "the tool can be there, but not turned like this"
+            : "the tool can be there, but not with its axes along those of the base frame";
     found.reason += "; " + turned;
     answer.page().paragraph(turned);
   }

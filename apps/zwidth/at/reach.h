@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "section.h"
+#include "goal.h"
 
 /// How `zwidth at` finds the posture that is asked about, and what it says where there is none.
 
@@ -11,17 +11,20 @@ namespace zwidth::at {
 
 struct Found {
   Solution solution;
-  std::string reason;                ///< why it is not reached; empty where it is
-  std::vector<Solution> solutions;   ///< of --position: every branch
-  Vector3 target = Vector3::Zero();  ///< of --position, base frame [m]
+  std::string reason;               ///< why it is not reached; empty where it is
+  std::vector<Solution> solutions;  ///< of --position: every branch
+  Goal goal;                        ///< of --position
+  bool kept_in_vain = false;        ///< it is the joint kept that it is not reached with
 
   bool reached() const {
     return solution.status == SolveStatus::reached || solution.status == SolveStatus::degraded;
   }
 };
 
-Found find_posture(const Model& model, const Arguments& arguments, const Frame& frame);
+void find_posture(const Model& model, const Arguments& arguments, const Frame& frame, Found& found);
 
+/// "choice": which posture an arm with joints to spare takes.
+void write_choice(const Found& found, const Model& model, Answer& answer);
 /// "solutions": every branch that brings the tool to the position.
 void write_branches(const Found& found, const Model& model, Answer& answer);
 /// "nearest_reachable". May add to the reason.

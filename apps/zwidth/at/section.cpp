@@ -19,8 +19,8 @@ constexpr const char* kMotion = "give --rate or --acceleration";
 constexpr const char* kLoad = "give --load";
 
 /// Keys of the head, and of the answer to --position; `write_sections` does not write them.
-const std::vector<std::string> kOtherKeys = {"device",    "status",           "frame", "reason", "notes",
-                                             "solutions", "nearest_reachable"};
+const std::vector<std::string> kOtherKeys = {"device", "status", "frame",     "reason",
+                                             "notes",  "choice", "solutions", "nearest_reachable"};
 
 /// The direction that a delta's forearms, coplanar, do not hold. Others leave it open.
 std::optional<ToolVector> free_direction(const Posture& posture, const Frame& frame) {
@@ -49,6 +49,7 @@ Singularity find_singularity(const Posture& posture, const Rates& rates, const F
   Jacobian scaled = J;
   scaled.bottomRows(turning) *= length;
   auto [u, sigma, v] = svd(scaled);
+  result.weak = u.col(freedoms - 1);
   if (sigma[freedoms - 1] > kRounding * length) return result;
   result.loses = true;
   result.lost = u.col(freedoms - 1);

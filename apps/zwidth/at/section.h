@@ -19,6 +19,11 @@ namespace zwidth::at {
 struct Arguments : DeviceArguments {
   std::string joints;
   std::string position;
+  std::string orientation;
+  std::string rotation;
+  std::string keep;
+  std::string near;
+  std::string maximise;
   std::string load;
   std::string rate;
   std::string acceleration;
@@ -53,6 +58,9 @@ struct Singularity {
   std::optional<ToolVector> free;  ///< along this unit vector, in the user's frame, where it is known
   bool loses = false;              ///< the tool cannot move along `lost`, whatever the joints do
   ToolVector lost;                 ///< unit, in the user's frame
+  /// Along which the tool moves least, where `lost` does not say it; empty where J means nothing. Both have
+  /// their angular part times the characteristic length.
+  ToolVector weak;
 };
 
 /// One posture, and what the user asks of it. Tool vectors and the Jacobian are in the user's frame.

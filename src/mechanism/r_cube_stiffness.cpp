@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -132,6 +133,32 @@ RCubeLegElasticity r_cube_leg_elasticity(const RCubeLinks& links, int leg, const
   const Chain straight = chain_of(links.geometry, leg, angles, theta);
   for (int k = 0; k < 3; ++k) theta[k] = springs[k] * straight.J_theta[k].transpose() * wrench;  // (5.117)
   return elasticity(links, chain_of(links.geometry, leg, angles, theta), springs);
+}
+
+RCubeLoadedLeg r_cube_loaded_leg(const RCubeLinks& links, int leg, const Vector3& angles, const Vector6& wrench,
+                                 double tolerance, int max_iterations) noexcept {
+  RCubeLoadedLeg result;
+  Springs theta = {Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
+  const std::array<Matrix6, 3> springs = spring_compliances(links);
+  Chain chain = chain_of(links.geometry, leg, angles, theta);
+  const double length = links.geometry.total_length();
+  while (!result.converged && result.iterations < max_iterations) {
+    ++result.iterations;
+    result.residual = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const Vector6 next = springs[k] * chain.J_theta[k].transpose() * wrench;
+      Vector6 change = (next - theta[k]).cwiseAbs();
+      change.head<3>() /= length;
+      result.residual = std::max(result.residual, change.maxCoeff());
+      theta[k] = next;
+    }
+    constexpr double kOutOfHand = 10.0;  // no link turns so far
+    if (!(result.residual < kOutOfHand)) break;
+    chain = chain_of(links.geometry, leg, angles, theta);
+    result.converged = result.residual <= tolerance;
+  }
+  result.elasticity = elasticity(links, chain, springs);
+  return result;
 }
 
 Matrix6 r_cube_stiffness(const RCubeLinks& links, const RCubeSolution& solution) noexcept {

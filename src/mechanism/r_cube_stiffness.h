@@ -38,6 +38,17 @@ RCubeLegElasticity r_cube_leg_elasticity(const RCubeLinks& links, int leg, const
 RCubeLegElasticity r_cube_leg_elasticity(const RCubeLinks& links, int leg, const Vector3& angles,
                                          const Vector6& wrench) noexcept;
 
+/// The same with every step taken from the leg as the last one deflected it, its angles fixed, until the
+/// deflections stay (the force equilibrium of fig 5.7).
+struct RCubeLoadedLeg {
+  bool converged = false;  ///< else what stands here is not the answer
+  int iterations = 0;
+  double residual = 0.0;  ///< last change of a deflection, over the leg's length or in rad
+  RCubeLegElasticity elasticity;
+};
+RCubeLoadedLeg r_cube_loaded_leg(const RCubeLinks& links, int leg, const Vector3& angles, const Vector6& wrench,
+                                 double tolerance = 1e-12, int max_iterations = 100) noexcept;
+
 /// K_C of all legs at their postures (eq 5.123). REQUIRES: solution.closed().
 Matrix6 r_cube_stiffness(const RCubeLinks& links, const RCubeSolution& solution) noexcept;
 

@@ -142,6 +142,30 @@ TEST(RCubeLegElasticity, UnderASmallLoadIsTheUnloadedOneAndKeepsItsRank) {
   }
 }
 
+TEST(RCubeLoadedLeg, GoesOnFromTheDirectStepToWhatStays) {
+  const RCubeLinks links = links_of(test::published_r_cube());
+  const Vector3 q(0.2, -0.4, -1.2);
+  const Vector6 wrench = (Vector6() << 100, -50, 80, 10, 20, -10).finished();
+  const Matrix6 direct = r_cube_leg_elasticity(links, 1, q, wrench).stiffness;
+  const RCubeLoadedLeg once = r_cube_loaded_leg(links, 1, q, wrench, 1e-12, 1);
+  EXPECT_FALSE(once.converged);
+  EXPECT_EQ(once.elasticity.stiffness, direct);
+  const RCubeLoadedLeg balanced = r_cube_loaded_leg(links, 1, q, wrench);
+  ASSERT_TRUE(balanced.converged);
+  EXPECT_GT(balanced.iterations, 2);
+  EXPECT_LE(balanced.residual, 1e-12);
+  // From there, nothing more changes; and the direct step was near, in proportion to the load squared.
+  const RCubeLoadedLeg more = r_cube_loaded_leg(links, 1, q, wrench, 0.0, balanced.iterations + 5);
+  EXPECT_LT((more.elasticity.stiffness - balanced.elasticity.stiffness).norm(), 1e-10 * direct.norm());
+  const auto off = [&](double load) {
+    return (r_cube_leg_elasticity(links, 1, q, load * wrench).stiffness -
+            r_cube_loaded_leg(links, 1, q, load * wrench).elasticity.stiffness)
+        .norm();
+  };
+  EXPECT_NEAR(off(0.02) / off(0.01), 4.0, 0.2);
+  EXPECT_FALSE(r_cube_loaded_leg(links, 1, q, 1e6 * wrench).converged);
+}
+
 TEST(RCubeLegElasticity, TakesOtherLengthsForTheLinksOwnStiffness) {
   RCubeLinks links = links_of(test::published_r_cube());
   const Vector3 q(0.2, -0.4, -1.2);

@@ -9,6 +9,7 @@
 #include "figure/svg.h"
 #include "model.h"
 #include "sheet_arm.h"
+#include "sheet_stiffness.h"
 #include "sheet_text.h"
 #include "terminal.h"
 
@@ -102,6 +103,7 @@ class Page {
     if (sheet_.workspace) dexterity(*sheet_.workspace);
     if (sheet_.continuous && sheet_.peak) force();
     inertia();
+    stiffness();
     resolution();
     for (size_t i = 0; i < sheet_.drives.size(); ++i) drive(i);
     for (size_t i = 0; i < sheet_.pneumatic_drives.size(); ++i) cylinder(i);
@@ -456,6 +458,23 @@ class Page {
     statistics("Largest joint torque against gravity", sheet_.inertia->gravity_torque, kMilli, "mN m");
     statistics_end();
     values_table([](const DescribedValue& value) { return value.table.starts_with("body"); }, true);
+  }
+
+  void stiffness() {
+    section("stiffness", "Stiffness and vibration");
+    if (sheet_.stiffness) {
+      how(stiffness_how(*sheet_.stiffness));
+      statistics_head("Over postures");
+      for (const std::vector<std::string>& row : stiffness_rows(sheet_)) {
+        std::string name = row[0];
+        name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+        rows_ += "<tr>" + cell(name) + cell(row[1], "n") + cell(row[2], "n") + cell(row[3], "n") +
+                 cell(row[4], "w") + "</tr>\n";
+      }
+      statistics_end();
+      body_ += fmt::format("<p>What gives way: {}.</p>\n", escaped(give_text(*sheet_.stiffness)));
+    }
+    for (const std::string& missing : not_given(sheet_)) body_ += fmt::format("<p>{}</p>\n", escaped(missing));
   }
 
   void resolution() {

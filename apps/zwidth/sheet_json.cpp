@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sheet_arm.h"
+#include "sheet_stiffness.h"
 
 #include "zwidth/description/names.h"
 #include "zwidth/description/values.h"
@@ -267,6 +268,12 @@ Json data_sheet_json(const DataSheet& sheet, const Description& description) {
                            {"gravity_torque", statistic_json(sheet.inertia->gravity_torque)}};
   } else {
     absent("inertia", "nothing has mass");
+  }
+  if (sheet.stiffness) {
+    document["stiffness"] = stiffness_json(*sheet.stiffness);
+  } else {
+    absent("stiffness",
+           "not given by the source: neither sections of the links nor the stiffness of every drive");
   }
   Json resolution;
   resolution["joint"] = json_array(sheet.joint_resolution);

@@ -8,6 +8,7 @@
 
 #include "model.h"
 #include "sheet_arm.h"
+#include "sheet_stiffness.h"
 
 #include "zwidth/description/units.h"
 #include "zwidth/description/values.h"
@@ -81,6 +82,7 @@ class SheetText {
     if (sheet_.workspace) dexterity(*sheet_.workspace);
     if (sheet_.continuous && sheet_.peak) forces();
     if (sheet_.inertia) inertia(*sheet_.inertia);
+    stiffness();
     resolution();
     for (const DriveSheet& drive : sheet_.drives) drive_section(drive);
     for (const PneumaticDriveSheet& drive : sheet_.pneumatic_drives) cylinder_section(drive);
@@ -267,6 +269,16 @@ class SheetText {
     rows.push_back(cells("in the heaviest direction", inertia.heaviest, kMilli, "g"));
     rows.push_back(cells("torque against gravity", inertia.gravity_torque, kMilli, "mN m"));
     statistics(rows, inertia.spacing);
+  }
+
+  void stiffness() {
+    text_.heading("Stiffness at the tool");
+    if (sheet_.stiffness) {
+      text_.table({"over postures", "min", "mean", "max", ""}, stiffness_rows(sheet_));
+      text_.paragraph(stiffness_how(*sheet_.stiffness), 2, Tint::dim);
+      text_.paragraph("What gives way: " + give_text(*sheet_.stiffness) + ".", 2);
+    }
+    for (const std::string& missing : not_given(sheet_)) text_.paragraph(missing, 2);
   }
 
   void resolution() {

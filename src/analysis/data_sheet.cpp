@@ -341,6 +341,7 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
   if (!all_moved)
     sheet.warnings.push_back("Not every active joint has a drive: forces and resolution are left out.");
   add_drive_warnings(sheet);
+  sheet.stiffness = stiffness_sheet(mechanism, drives);
 
   if (mechanism.tool_turns() || mechanism.platform() == PlatformFreedom::point) {
     sheet.arm = arm_of(mechanism, drives, cylinders, sheet.joint_resolution, options);

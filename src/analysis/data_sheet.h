@@ -11,6 +11,7 @@
 #include "zwidth/analysis/force.h"
 #include "zwidth/analysis/inertia.h"
 #include "zwidth/analysis/resolution.h"
+#include "zwidth/analysis/stiffness_sheet.h"
 #include "zwidth/analysis/workspace.h"
 #include "zwidth/description/description.h"
 
@@ -139,6 +140,7 @@ struct DataSheet {
   ActiveVector joint_resolution;   ///< angle of one count, per active joint [rad]; 0 without a drive
   ActiveVector torque_resolution;  ///< torque of one current step, per active joint [N m]; 0 if not given
 
+  std::optional<StiffnessSheet> stiffness;            ///< empty where the source does not give enough
   std::vector<DriveSheet> drives;                     ///< in the order of the description
   std::vector<PneumaticDriveSheet> pneumatic_drives;  ///< in the order of the joints
   std::vector<std::string> warnings;  ///< sentences for a person: failed margins, what could not be computed

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "context.h"
+
+#include "zwidth/analysis/data_sheet.h"
+
+/// What a data sheet says of stiffness and vibration, for the terminal, the page and programs; and, where a
+/// source does not give enough, that it does not.
+
+namespace zwidth {
+
+/// Rows of name, least, mean, most and unit. Empty without a stiffness.
+std::vector<std::vector<std::string>> stiffness_rows(const DataSheet& sheet);
+
+/// Which parts give way, and by what share: "44 % leg1/elbow1, 30 % leg1/swing1, ...".
+std::string give_text(const StiffnessSheet& stiffness);
+
+/// How the figures came about, in a sentence.
+std::string stiffness_how(const StiffnessSheet& stiffness);
+
+/// What is missing, in a sentence each.
+std::vector<std::string> not_given(const DataSheet& sheet);
+
+Json stiffness_json(const StiffnessSheet& stiffness);
+
+}  // namespace zwidth

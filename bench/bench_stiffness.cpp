@@ -5,7 +5,7 @@
 
 #include "harness.h"
 
-#include "zwidth/mechanism/families.h"
+#include "zwidth/mechanism/batch_r_cube.h"
 #include "zwidth/mechanism/loaded_stiffness.h"
 #include "zwidth/mechanism/stiffness.h"
 
@@ -110,6 +110,39 @@ int main(int argc, char** argv) {
   });
   one.goal(1.5e-6);
   one.run();
+
+  // The map of a cube of 120 mm at 2 mm.
+  constexpr int kSide = 61;
+  std::vector<double> x, y, z;
+  for (int i = 0; i < kSide * kSide * kSide; ++i) {
+    x.push_back(0.1117 - 0.060 + 0.002 * (i % kSide));
+    y.push_back(0.1117 - 0.060 + 0.002 * (i / kSide % kSide));
+    z.push_back(0.1117 - 0.060 + 0.002 * (i / kSide / kSide));
+  }
+  zwidth::RCubeLinks links{
+      .geometry = {.drive_link = 0.1117, .inner_link = 0.0741, .outer_link = 0.1218, .base_offset = 0.1117},
+      .rigidity = {}};
+  links.rigidity.fill(mechanism.beams().front().rigidity);
+  const zwidth::RCubeStiffnessBatch batch(links);
+  std::vector<double> K(21 * x.size()), figures(zwidth::kRCubeElasticFigures * x.size());
+  bench::Suite many("R-CUBE: a map of 226 981 tool points, one thread", options);
+  many.add("zwidth RCubeStiffnessBatch::stiffness, K of each point", static_cast<double>(x.size()),
+           [&](long n) {
+             for (long it = 0; it < n; ++it) {
+               batch.stiffness(x, y, z, K);
+               bench::keep(K);
+             }
+           });
+  many.goal(0.4e-6);
+  many.add("zwidth RCubeStiffnessBatch::figures, give and principal stiffness", static_cast<double>(x.size()),
+           [&](long n) {
+             for (long it = 0; it < n; ++it) {
+               batch.figures(x, y, z, figures);
+               bench::keep(figures);
+             }
+           });
+  many.goal(0.4e-6);
+  many.run();
 
   bench::Suite loaded("R-CUBE: loaded, weights and geometric term, iterated", options);
   loaded.add("zwidth loaded_stiffness", 8, [&](long n) {

@@ -12,6 +12,7 @@
 #include "zwidth/analysis/internal/parallel.h"
 #include "zwidth/analysis/posture_sweep.h"
 #include "zwidth/mechanism/batch_serial.h"
+#include "zwidth/mechanism/point_reach.h"
 
 namespace zwidth {
 namespace {
@@ -183,6 +184,17 @@ class Leader {
   mutable SerialForward here_;
 };
 
+// Tests the middle of every cube.
+bool decide(ReachMap& map, const Box& box, const PointReach& reach, const Effort& effort) {
+  const auto rows = static_cast<std::size_t>(box.count[0] * box.count[1]);
+  const auto per_row = static_cast<std::size_t>(box.count[2]);
+  return internal::for_each_index(rows, effort, [&](std::size_t row) {
+    for (std::size_t cube = row * per_row; cube < (row + 1) * per_row; ++cube) {
+      map.inside[cube] = reach.contains(box.middle(box.place(cube))) ? 1 : 0;
+    }
+  });
+}
+
 // The arm's postures in the middles of the cubes found so far.
 class Postures {
  public:
@@ -229,10 +241,16 @@ ReachMap reach_map(const Mechanism& mechanism, const ReachOptions& options, cons
   assert(!reach_obstacle(mechanism) && options.samples > 0 && options.spacing >= 0.0);
   const Box box = box_of(mechanism, options);
   ReachMap map{.spacing = box.h, .first = box.first, .count = box.count};
+  map.inside.assign(box.size(), 0);
+  if (options.closed_form) {
+    if (const auto exact = PointReach::of(mechanism)) {
+      map.complete = decide(map, box, *exact, effort);
+      return map;
+    }
+  }
   const std::int64_t samples =
       std::min<std::int64_t>(options.samples, std::numeric_limits<std::uint32_t>::max());
   const std::vector<std::uint64_t> nearest = nearest_samples(mechanism, box, samples, effort, map.complete);
-  map.inside.assign(box.size(), 0);
   if (!map.complete) return map;
 
   const double tolerance = kOnMiddle * box.h;

@@ -18,6 +18,8 @@ namespace zwidth {
 std::optional<std::string> reach_obstacle(const Mechanism& mechanism);
 
 struct ReachOptions {
+  /// Decide each cube exactly where the arm allows it (point_reach.h); false draws postures for any arm.
+  bool closed_form = true;
   std::int64_t samples = 10'000'000;  ///< postures drawn, spread evenly over the joint ranges
   double spacing =
       0.0;  ///< edge of the cubes [m]; 0: so that the box round the reach has a tenth as many cubes as samples
@@ -38,7 +40,8 @@ struct ReachMap {
   bool contains(const Vector3& point) const;  ///< of the cube round it
   std::int64_t cubes_inside() const;
 };
-/// Postures are drawn; from the one nearest to the middle of each cube Newton's method leads the tool there
+/// Of an arm whose reach is known in closed form the middle of every cube is tested. Of others, postures are
+/// drawn; from the one nearest to the middle of each cube Newton's method leads the tool there
 /// with the joints in their ranges, and from every cube found on to its neighbours. The same for any number of
 /// threads. REQUIRES: !reach_obstacle(mechanism), samples > 0, spacing >= 0. Throws std::length_error if a
 /// spacing asks for more than 10^9 cubes.

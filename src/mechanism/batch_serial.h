@@ -31,7 +31,7 @@ class SerialBatch {
   /// `conditioning`: rows / (|J|_F |J^+|_F), the reciprocal of the condition number in the Frobenius norm: 1
   /// where all singular values are equal, 0 where one vanishes (Angeles 2014, section 5.8). Both lose digits,
   /// to half of them, towards a singularity. With fewer joints than rows both are 0. REQUIRES: as above;
-  /// manipulability and conditioning have n elements; length > 0.
+  /// manipulability has n elements, conditioning as many or, where it is not asked for, none; length > 0.
   void dexterity(std::span<const double> joints, Rows rows, double length, std::span<double> x,
                  std::span<double> y, std::span<double> z, std::span<double> manipulability,
                  std::span<double> conditioning) const;

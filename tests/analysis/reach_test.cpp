@@ -34,24 +34,29 @@ TEST(Reach, OfTheSevenJointArmIsThatOfTheSource) {
   // m^3.
   const Mechanism seven(test::seven_joint_arm(0.25, 0.25));
   Description locked = test::arm_description(test::seven_dof_locked().joints);
-  const ReachComparison comparison = compare_reach(seven, Mechanism(locked), {.samples = 3'000'000});
-  EXPECT_NEAR(comparison.first.value, 0.19302, 0.01 * 0.19302 + comparison.first.error_estimate);
-  EXPECT_NEAR(comparison.second.value, 0.11797, 0.01 * 0.11797 + comparison.second.error_estimate);
-  EXPECT_NEAR(comparison.gain(), 0.636, 0.03);
-  // What six joints reach, seven reach too, but for cubes whose middle lies on the boundary.
-  EXPECT_LT(comparison.only_second, 0.005 * comparison.second.value);
+  for (const bool closed_form : {true, false}) {
+    const ReachComparison comparison =
+        compare_reach(seven, Mechanism(locked), {.closed_form = closed_form, .samples = 3'000'000});
+    EXPECT_NEAR(comparison.first.value, 0.19302, 0.01 * 0.19302 + comparison.first.error_estimate);
+    EXPECT_NEAR(comparison.second.value, 0.11797, 0.01 * 0.11797 + comparison.second.error_estimate);
+    EXPECT_NEAR(comparison.gain(), 0.636, 0.03);
+    // What six joints reach, seven reach too, but for drawn cubes whose middle lies on the boundary.
+    EXPECT_LE(comparison.only_second, closed_form ? 0.0 : 0.005 * comparison.second.value);
+  }
 }
 
 TEST(Reach, DoesNotDependOnTheNumberOfThreads) {
   const Mechanism arm(test::seven_joint_arm(0.3, 0.2));
-  const ReachMap one = reach_map(arm, {.samples = 100'000}, {.threads = 1});
-  const ReachMap all = reach_map(arm, {.samples = 100'000});
-  EXPECT_EQ(one.inside, all.inside);
+  for (const bool closed_form : {true, false}) {
+    const ReachMap one = reach_map(arm, {.closed_form = closed_form, .samples = 100'000}, {.threads = 1});
+    const ReachMap all = reach_map(arm, {.closed_form = closed_form, .samples = 100'000});
+    EXPECT_EQ(one.inside, all.inside);
+  }
 }
 
 TEST(Reach, HoldsEveryPostureAndNoPointBeyond) {
   const Mechanism arm(test::seven_joint_arm(0.3, 0.2));
-  const ReachMap map = reach_map(arm, {.samples = 300'000});
+  const ReachMap map = reach_map(arm, {.closed_form = false, .samples = 300'000});
   const double reach = std::sqrt(0.09 + 0.04 + 0.12 * std::cos(std::numbers::pi / 4.0));
   std::int64_t beyond = 0;
   for (std::int64_t i = 0; i < map.count[0]; ++i) {
@@ -82,7 +87,7 @@ TEST(Reach, AgreesWithTheClosedFormOfASphericalShoulder) {
       const Solution drawn = solve_forward(arm, spread_posture(arm, i));
       ASSERT_TRUE(exact.contains(drawn.posture->tool().position)) << i;
     }
-    const ReachMap map = reach_map(arm, {.samples = 500'000});
+    const ReachMap map = reach_map(arm, {.closed_form = false, .samples = 500'000});
     std::int64_t inside = 0, missed = 0, beyond = 0;
     for (std::int64_t i = map.first[0]; i < map.first[0] + map.count[0]; ++i) {
       for (std::int64_t j = map.first[1]; j < map.first[1] + map.count[1]; ++j) {

@@ -152,6 +152,46 @@ TEST(ArmInverse, ClosedFormAndGeneralSolverAgree) {
   EXPECT_GT(solved, count / 2);
 }
 
+// Six joints that are no shoulder and wrist: the general solver of legs finds the pose from home, and among all
+// of its postures the one that the pose was taken from.
+TEST(ArmInverse, AnySixJointsAreSolved) {
+  std::mt19937_64 random(13);
+  int asked = 0, found = 0, listed = 0;
+  for (int n = 0; n < 12; ++n) {
+    SerialDescription arm = test::random_arm(random, 6, n % 2 == 0);
+    for (SerialJointDescription& row : arm.joints) {
+      if (row.type == SerialJointType::revolute) row.range = {-kPi, kPi};
+    }
+    const Mechanism mechanism = mechanism_of(arm);
+    for (int k = 0; k < 4; ++k) {
+      const ActiveVector q = within_ranges(random, mechanism);
+      const Solution here = solve_forward(mechanism, q);
+      if (here.conditioning < 0.01) continue;
+      ++asked;
+      const Solution one = solve_inverse(mechanism, here.posture->tool());
+      if (one) {
+        ++found;
+        EXPECT_LT(gap(mechanism.serial()->pose(one.posture->active()), here.posture->tool()), 1e-11);
+      }
+      for (const Solution& solution : solve_inverse_all(mechanism, here.posture->tool())) {
+        double apart = 0.0;
+        for (int j = 0; j < 6; ++j) {
+          const double way = solution.posture->active()[j] - q[j];
+          const bool slides = mechanism.joints()[j].type == JointType::prismatic;
+          apart = std::max(apart, std::abs(slides ? way : std::remainder(way, 2.0 * kPi)));
+        }
+        if (apart < 1e-6) {
+          ++listed;
+          break;
+        }
+      }
+    }
+  }
+  EXPECT_GT(asked, 10);
+  EXPECT_EQ(found, asked);
+  EXPECT_GT(listed, asked * 9 / 10);
+}
+
 // An S-R-S arm set up in any way: other base, other zeros, axes the other way round, another tool.
 LegsDescription disguised(std::mt19937_64& random, const SerialDescription& arm) {
   LegsDescription legs = legs_of(arm);

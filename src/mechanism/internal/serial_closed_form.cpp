@@ -122,15 +122,12 @@ SerialClosedForm::Candidate SerialClosedForm::at(const Question& question, doubl
   return candidate(question, angles_at(question, elbow, branch));
 }
 
-// The best elbow of one branch. Where a joint is at an end of its range one arc of the circle ends; on each
-// that is allowed, elbows are tried, and from the best of their neighbours the search goes on.
-void SerialClosedForm::best_of_branch(const Question& question, int branch,
-                                      Candidates& candidates) const noexcept {
-  const double own = question.circle.angle_of_elbow(srs_->lengths, question.near);
-  std::array<double, 2 * 2 * 6 + 2> cut;  // from `own` on
-  int cuts = 0;
-  cut[cuts++] = 0.0;
-  cut[cuts++] = kTurn;
+// Where on the circle, from an elbow on, a joint of some branch is at an end of its range; and the circle's
+// ends.
+SerialClosedForm::Cuts SerialClosedForm::cuts_of(const Question& question, double own) const noexcept {
+  Cuts cuts;
+  cuts.at[cuts.count++] = 0.0;
+  cuts.at[cuts.count++] = kTurn;
   const int last = question.match == Match::position ? 3 : 7;  // the hand does not move
   for (int i = 0; i < last; ++i) {
     if (i == 3 || srs_->joint[i] < 0) continue;
@@ -141,11 +138,20 @@ void SerialClosedForm::best_of_branch(const Question& question, int branch,
       const SrsElbows ends = srs_elbows_with(srs_->lengths, question.wrist, question.circle, i, angle);
       for (int e = 0; e < ends.count; ++e) {
         const double from_own = std::remainder(ends.elbow[e] - own, kTurn);
-        cut[cuts++] = from_own < 0.0 ? from_own + kTurn : from_own;
+        cuts.at[cuts.count++] = from_own < 0.0 ? from_own + kTurn : from_own;
       }
     }
   }
-  std::sort(cut.begin(), cut.begin() + cuts);
+  std::sort(cuts.at.begin(), cuts.at.begin() + cuts.count);
+  return cuts;
+}
+
+// The best elbow of one branch. Where a joint is at an end of its range an arc of the circle ends; on each
+// that is allowed, elbows are tried, and from the best of their neighbours the search goes on.
+void SerialClosedForm::best_of_branch(const Question& question, int branch,
+                                      Candidates& candidates) const noexcept {
+  const double own = question.circle.angle_of_elbow(srs_->lengths, question.near);
+  const auto [cut, cuts] = cuts_of(question, own);
 
   const auto here = [&](double elbow) { return at(question, own + elbow, branch); };
   bool some_allowed = false;
@@ -179,13 +185,14 @@ void SerialClosedForm::best_of_branch(const Question& question, int branch,
       consider(found, here(found));
     }
   }
-  if (question.redundancy.rule != Redundancy::Rule::maximise) polish(question, branch, own + best_elbow, best);
+  if (question.redundancy.rule != Redundancy::Rule::maximise)
+    polish(question, branch, own + best_elbow, false, best);
   candidates.add(best);
 }
 
 // Gauss-Newton on the squared distance, whose minimum comparing values finds to half the digits only.
-// Whether it has come to rest.
-bool SerialClosedForm::polish(const Question& question, int branch, double elbow,
+// `beyond` lets joints leave their ranges. Whether it has come to rest.
+bool SerialClosedForm::polish(const Question& question, int branch, double elbow, bool beyond,
                               Candidate& best) const noexcept {
   constexpr double kAtRest = 1e-7;
   double step = 1.0;
@@ -196,7 +203,8 @@ bool SerialClosedForm::polish(const Question& question, int branch, double elbow
     step = along.dot(question.start - best.joints) / along.squaredNorm();
     if (!(std::abs(step) < kStep)) return false;
     const Candidate there = at(question, elbow + step, branch);
-    if (there.within != best.within || there.objective > best.objective + 1e-14 * (1.0 + best.objective)) break;
+    const bool leaves = best.within && !there.within;
+    if ((leaves && !beyond) || there.objective > best.objective + 1e-14 * (1.0 + best.objective)) break;
     best = there;
     elbow += step;
     if (std::abs(step) < 1e-14) break;
@@ -205,16 +213,26 @@ bool SerialClosedForm::polish(const Question& question, int branch, double elbow
 }
 
 // The start's own branch, where the next posture is close by: what a control cycle asks, without a search.
+// Where a joint is at the end of its range the nearest posture that is allowed has it there.
 bool SerialClosedForm::follow(const Question& question, Candidates& candidates) const noexcept {
   constexpr double kClose = 0.2;  // of every joint [rad]
   const SrsAngles& near = question.near;
   const auto negative = [](double angle) { return std::remainder(angle, kTurn) < 0.0 ? 1 : 0; };
   const int branch = negative(near[5]) + 2 * negative(near[3]) + 4 * negative(near[1]);
-  const double elbow = question.circle.angle_of_elbow(srs_->lengths, near);
-  Candidate best = at(question, elbow, branch);
-  if (!polish(question, branch, elbow, best) || !best.within ||
-      (best.joints - question.start).cwiseAbs().maxCoeff() > kClose)
-    return false;
+  const double own = question.circle.angle_of_elbow(srs_->lengths, near);
+  const auto close = [&](const Candidate& one) {
+    return one.within && (one.joints - question.start).cwiseAbs().maxCoeff() < kClose;
+  };
+  Candidate best = at(question, own, branch);
+  if (!polish(question, branch, own, true, best)) return false;
+  if (!close(best)) {
+    const Cuts cuts = cuts_of(question, own);
+    for (int c = 0; c < cuts.count; ++c) {
+      const Candidate edge = at(question, own + cuts.at[c], branch);
+      if (close(edge) && edge.better_than(best)) best = edge;
+    }
+  }
+  if (!close(best)) return false;
   candidates.add(best);
   return true;
 }

@@ -59,13 +59,20 @@ class SerialClosedForm final : public ClosedForm {
     SrsElbowCircle circle = {};  ///< where the elbow may be
   };
 
+  /// Elbows, from one of them on, at which arcs of the circle end [rad].
+  struct Cuts {
+    std::array<double, 2 * 2 * 6 + 2> at;
+    int count = 0;
+  };
+
   SolveStatus solve(Question& question, Candidates& candidates) const noexcept;
   SolveStatus keep(Question& question, Candidates& candidates) const noexcept;
   SolveStatus given(const Question& question, SrsGiven joint, double angle,
                     Candidates& candidates) const noexcept;
+  Cuts cuts_of(const Question& question, double own) const noexcept;
   void best_of_branch(const Question& question, int branch, Candidates& candidates) const noexcept;
   bool follow(const Question& question, Candidates& candidates) const noexcept;
-  bool polish(const Question& question, int branch, double elbow, Candidate& best) const noexcept;
+  bool polish(const Question& question, int branch, double elbow, bool beyond, Candidate& best) const noexcept;
 
   SrsAngles angles_at(const Question& question, double elbow, int branch) const noexcept;
   Candidate at(const Question& question, double elbow, int branch) const noexcept;

@@ -68,6 +68,7 @@ int run(int argc, char** argv) {
   add_synthesise(app, context);
   add_reproduce(app, context);
   add_show(app, context);
+  add_export(app, context);
   add_check(app, context);
   add_devices(app, context);
   add_parts(app, context);

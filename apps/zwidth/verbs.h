@@ -13,6 +13,7 @@ void add_size(CLI::App& app, Context& context);
 void add_reproduce(CLI::App& app, Context& context);
 void add_synthesise(CLI::App& app, Context& context);
 void add_show(CLI::App& app, Context& context);
+void add_export(CLI::App& app, Context& context);
 void add_check(CLI::App& app, Context& context);
 void add_devices(CLI::App& app, Context& context);
 void add_parts(CLI::App& app, Context& context);

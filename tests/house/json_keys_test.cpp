@@ -56,6 +56,7 @@ TEST(JsonKeys, AreAllDocumented) {
        "68mm",
        {}},
       {"show delta", {}},
+      {"export r-cube --to urdf", {}},
       {"check delta", {}},
       {"devices", {}},
       {"parts", {"parts.values"}},

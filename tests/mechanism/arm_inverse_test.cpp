@@ -292,6 +292,32 @@ TEST(Redundancy, KeepsTheJointThatIsNamed) {
   }
 }
 
+// Stretched or folded the arm leaves theta3 and theta5 open together: either may be kept.
+TEST(Redundancy, KeepsAJointOfASingularElbow) {
+  SerialDescription arm = test::seven_dof();
+  for (SerialJointDescription& row : arm.joints) row.range = {-kPi, kPi};
+  const Mechanism mechanism = mechanism_of(arm);
+  const auto turned = [](double a, double b, double c) {
+    return (Eigen::AngleAxisd(a, Vector3::UnitZ()) * Eigen::AngleAxisd(b, Vector3::UnitY()) *
+            Eigen::AngleAxisd(c, Vector3::UnitX()))
+        .toRotationMatrix();
+  };
+  for (const Vector3& position : {Vector3(0.5, 0.0, 0.0), Vector3(0.0, 0.3, -0.4), Vector3(0.0, 0.0, 0.0)}) {
+    const Pose tool{.position = position, .rotation = turned(0.3, -0.4, 0.7)};
+    for (const int joint : {2, 4}) {
+      const double value = joint == 2 ? -0.3 : 0.8;
+      const Redundancy keep{.rule = Redundancy::Rule::keep, .joint = joint, .value = value};
+      const std::vector<Solution> all = solve_inverse_all(mechanism, tool, with(nullptr, keep));
+      EXPECT_EQ(all.size(), 8u);
+      for (const Solution& one : all) {
+        EXPECT_EQ(one.status, SolveStatus::degraded);
+        EXPECT_LT(gap(mechanism.serial()->pose(one.posture->active()), tool), 1e-12);
+        EXPECT_NEAR(std::remainder(one.posture->active()[joint] - value, 2.0 * kPi), 0.0, 1e-12);
+      }
+    }
+  }
+}
+
 // Nearest: a small move of the goal makes a small move of the joints, across which nothing along the
 // self-motion is nearer (its gradient along the null space of J vanishes); both solvers agree.
 TEST(Redundancy, NearestIsNearest) {

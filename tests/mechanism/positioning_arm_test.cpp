@@ -160,8 +160,11 @@ TEST(PositioningArm, EverySolutionReachesAndOneIsWhereItCameFrom) {
 TEST(PositioningArm, AgreesWithTheGeneralSolver) {
   Storm any;
   int compared = 0;
-  for (int n = 0; n < test::storm_size(3000); ++n) {
-    const Mechanism arm(any.any(n));
+  const int count = test::storm_size(100000);
+  std::optional<Mechanism> one_of_many;
+  for (int n = 0; n < count; ++n) {
+    if (n % 50 == 0) one_of_many.emplace(any.any(n / 50));
+    const Mechanism& arm = *one_of_many;
     const ActiveVector q = any.joints(arm);
     const Solution closed = solve_forward(arm, q), general = solve_forward(arm, q, kGeneral);
     ASSERT_TRUE(closed && general);
@@ -171,7 +174,7 @@ TEST(PositioningArm, AgreesWithTheGeneralSolver) {
     if (closed.conditioning < 1e-2) continue;
     // From a posture nearby both find the same root.
     ActiveVector near = q;
-    for (int j = 0; j < 3; ++j) near[j] += any(-0.02, 0.02);
+    for (int j = 0; j < 3; ++j) near[j] += any(-0.002, 0.002);
     const Solution start = solve_forward(arm, near);
     SolveOptions follow, follow_generally = kGeneral;
     follow.start = follow_generally.start = &*start.posture;
@@ -182,7 +185,7 @@ TEST(PositioningArm, AgreesWithTheGeneralSolver) {
     EXPECT_LT((one.posture->active().head(3) - other.posture->active().head(3)).norm(), 1e-8) << n;
     ++compared;
   }
-  EXPECT_GT(compared, 1500);
+  EXPECT_GT(compared, count / 2);
 }
 
 TEST(PositioningArm, OfSeveralSolutionsOneWithinTheRangesIsTaken) {

@@ -298,6 +298,17 @@ SolveStatus SerialClosedForm::keep(Question& question, Candidates& candidates) c
     for (int branch = 0; branch < 8; branch += 2) best_of_branch(question, branch, candidates);
     return SolveStatus::reached;
   }
+  if (joint == 4 && question.circle.status == SrsStatus::singular_elbow) {
+    // Stretched, theta3 + theta5 is decided, folded theta5 - theta3.
+    const double sign = question.circle.bend < 0.5 * std::numbers::pi ? -1.0 : 1.0;
+    for (int branch = 0; branch < 8; ++branch) {
+      SrsAngles theta = angles_at(question, 0.0, branch);
+      theta[2] += sign * (angle - theta[4]);
+      theta[4] = angle;
+      candidates.add(candidate(question, theta));
+    }
+    return SolveStatus::reached;
+  }
   const SrsElbows elbows = srs_elbows_with(srs_->lengths, question.wrist, question.circle, joint, angle);
   for (int e = 0; e < elbows.count; ++e) {
     for (int branch = 0; branch < 8; ++branch) {

@@ -223,7 +223,7 @@ class Parts {
       rows.push_back(row);
     }
     if (!name_.empty()) return;
-    sheet_.heading(kind + (kind.ends_with('y') ? "" : "s"));
+    sheet_.heading(kind == "lamina" ? "laminae" : kind + (kind.ends_with('y') ? "" : "s"));
     std::vector<std::string> head{"name"};
     for (const Column& column : columns_of_kind) head.push_back(column.title);
     sheet_.table(head, rows);

@@ -474,6 +474,8 @@ class Page {
       statistics_end();
       body_ += fmt::format("<p>What gives way: {}.</p>\n", escaped(give_text(*sheet_.stiffness)));
     }
+    for (const std::string& laminate : laminate_texts(description_))
+      body_ += fmt::format("<p>{}</p>\n", escaped(laminate));
     for (const std::string& missing : not_given(sheet_)) body_ += fmt::format("<p>{}</p>\n", escaped(missing));
   }
 

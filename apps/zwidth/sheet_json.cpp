@@ -275,6 +275,7 @@ Json data_sheet_json(const DataSheet& sheet, const Description& description) {
     absent("stiffness",
            "not given by the source: neither sections of the links nor the stiffness of every drive");
   }
+  document["laminates"] = laminates_json(description);
   Json resolution;
   resolution["joint"] = json_array(sheet.joint_resolution);
   resolution["torque"] = json_array(sheet.torque_resolution);

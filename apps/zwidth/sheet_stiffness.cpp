@@ -6,6 +6,8 @@
 
 #include "terminal.h"
 
+#include "zwidth/mechanism/beam_link.h"
+
 namespace zwidth {
 namespace {
 
@@ -84,6 +86,39 @@ std::vector<std::string> not_given(const DataSheet& sheet) {
     missing.emplace_back("Natural frequencies: not given by the source; the mass that some joint moves.");
   }
   return missing;
+}
+
+std::vector<std::string> laminate_texts(const Description& description) {
+  std::vector<std::string> texts;
+  for (const LaminateComparison& one : laminate_comparisons(description)) {
+    const bool theory = one.rule == LaminateRule::lamination;
+    const WallModuli &used = theory ? one.lamination : one.mean, &other = theory ? one.mean : one.lamination;
+    const auto change = [](double a, double b) { return fmt::format("{:+.0f} %", 100.0 * (b / a - 1.0)); };
+    texts.push_back(fmt::format("{}, {} plies: {} GPa along, {} GPa in shear by {}; by {} {} and {} ({}, {}).",
+                                one.on, one.plies, number(used.axial * 1e-9), number(used.shear * 1e-9),
+                                theory ? "lamination theory" : "the mean of the plies",
+                                theory ? "the mean of the plies" : "lamination theory",
+                                number(other.axial * 1e-9), number(other.shear * 1e-9),
+                                change(used.axial, other.axial), change(used.shear, other.shear)));
+  }
+  return texts;
+}
+
+Json laminates_json(const Description& description) {
+  const auto moduli = [](const WallModuli& of) {
+    return Json{{"axial", json_number(of.axial)},
+                {"transverse", json_number(of.transverse)},
+                {"shear", json_number(of.shear)}};
+  };
+  Json list = Json::array();
+  for (const LaminateComparison& one : laminate_comparisons(description)) {
+    list.push_back({{"on", one.on},
+                    {"plies", one.plies},
+                    {"rule", one.rule == LaminateRule::mean ? "mean" : "lamination"},
+                    {"mean", moduli(one.mean)},
+                    {"lamination", moduli(one.lamination)}});
+  }
+  return list;
 }
 
 Json stiffness_json(const StiffnessSheet& stiffness) {

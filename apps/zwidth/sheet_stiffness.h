@@ -6,6 +6,7 @@
 #include "context.h"
 
 #include "zwidth/analysis/data_sheet.h"
+#include "zwidth/description/description.h"
 
 /// What a data sheet says of stiffness and vibration, for the terminal, the page and programs; and, where a
 /// source does not give enough, that it does not.
@@ -24,6 +25,10 @@ std::string stiffness_how(const StiffnessSheet& stiffness);
 /// What is missing, in a sentence each.
 std::vector<std::string> not_given(const DataSheet& sheet);
 
+/// Moduli of laminated links by both rules, in a sentence each.
+std::vector<std::string> laminate_texts(const Description& description);
+
 Json stiffness_json(const StiffnessSheet& stiffness);
+Json laminates_json(const Description& description);
 
 }  // namespace zwidth

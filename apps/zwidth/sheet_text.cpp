@@ -278,6 +278,7 @@ class SheetText {
       text_.paragraph(stiffness_how(*sheet_.stiffness), 2, Tint::dim);
       text_.paragraph("What gives way: " + give_text(*sheet_.stiffness) + ".", 2);
     }
+    for (const std::string& laminate : laminate_texts(description_)) text_.paragraph(laminate, 2);
     for (const std::string& missing : not_given(sheet_)) text_.paragraph(missing, 2);
   }
 

@@ -57,6 +57,24 @@ WallProperties wall_properties(const WallDescription& wall, LaminateRule rule) {
   return {.moduli = *moduli, .density = lamina.density};
 }
 
+std::vector<LaminateComparison> laminate_comparisons(const Description& description) {
+  std::vector<LaminateComparison> comparisons;
+  for (const BodyDescription& body : description.bodies) {
+    if (!body.beam) continue;
+    const WallDescription& wall =
+        std::visit([](const auto& beam) -> const WallDescription& { return beam.wall; }, *body.beam);
+    const auto* laminate = std::get_if<LaminateDescription>(&wall);
+    if (laminate == nullptr) continue;
+    LaminateComparison one{.on = body.on,
+                           .rule = laminate->rule,
+                           .lamination = wall_properties(wall, LaminateRule::lamination).moduli,
+                           .mean = wall_properties(wall, LaminateRule::mean).moduli};
+    for (const PlyDescription& ply : laminate->plies) one.plies += ply.count;
+    comparisons.push_back(std::move(one));
+  }
+  return comparisons;
+}
+
 std::optional<BeamLink> beam_link(const BeamDescription& beam, const Vector3& from, const Vector3& to,
                                   const Vector3& axis) {
   return std::visit(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "zwidth/description/description.h"
@@ -21,6 +22,16 @@ struct WallProperties {
 WallProperties wall_properties(const WallDescription& wall);
 /// The same by another rule for laminates than the description's own.
 WallProperties wall_properties(const WallDescription& wall, LaminateRule rule);
+
+/// A laminate by both rules.
+struct LaminateComparison {
+  std::string on;                                ///< the link, as its body names it
+  LaminateRule rule = LaminateRule::lamination;  ///< that the description takes
+  int plies = 0;
+  WallModuli lamination, mean;  ///< [Pa]
+};
+/// Of every link that is laminated, in the order of the bodies. REQUIRES: `validate` finds nothing.
+std::vector<LaminateComparison> laminate_comparisons(const Description& description);
 
 /// One beam, by the two ends of its link.
 struct BeamLink {

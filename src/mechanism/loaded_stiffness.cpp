@@ -43,8 +43,16 @@ struct Weight {
 struct Leg {
   int count = 0;
   std::array<Freedom, kMaxFreedoms> freedoms;
-  Column value;       // deflections of springs, changes of passive joints
-  Square compliance;  // of the springs, blocks of six or one; zero elsewhere
+  Column value;  // deflections of springs, changes of passive joints
+  // Springs: six freedoms of a beam from `first` on, or one of a drive.
+  struct Spring {
+    int first = 0;
+    bool beam = false;
+    double drive = 0.0;  // compliance of a drive
+    Matrix6 compliance;  // of a beam
+  };
+  int spring_count = 0;
+  std::array<Spring, 2 * kMaxLegJoints> springs;
   int weight_count = 0;
   std::array<Weight, 4 * kMaxLegJoints> weights;
   Vector3 tip;
@@ -54,6 +62,22 @@ struct Leg {
   Column deflection;
   Vector6 force;  // of the platform on the tip, about the tip
 };
+
+// Deflections of the springs under a load on each freedom; zero for passive joints.
+template <class Load>
+Column deflected(const Leg& leg, const Load& load) {
+  Column result = Column::Zero(leg.count);
+  for (int s = 0; s < leg.spring_count; ++s) {
+    const Leg::Spring& spring = leg.springs[s];
+    if (spring.beam) {
+      const Vector6 own = load.template segment<6>(spring.first);
+      result.segment<6>(spring.first).noalias() = spring.compliance * own;
+    } else {
+      result[spring.first] = spring.drive * load[spring.first];
+    }
+  }
+  return result;
+}
 
 Matrix3 turn(const Vector3& axis, double angle) {
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
@@ -134,7 +158,6 @@ void LoadedMechanism::count_freedoms(int l) {
   leg.value = Column::Zero(leg.count);
   leg.deflection = Column::Zero(leg.count);
   leg.force.setZero();
-  leg.compliance = Square::Zero(leg.count, leg.count);
 }
 
 void LoadedMechanism::place(int l) {
@@ -143,7 +166,7 @@ void LoadedMechanism::place(int l) {
   Matrix3 R = Matrix3::Identity(), link = R;  // what carries the next axis, and the next point
   Vector3 p = Vector3::Zero();
   int next = 0;
-  leg.weight_count = 0;
+  leg.weight_count = leg.spring_count = 0;
   std::array<int, kMaxLegJoints> moved_by, turned_by;
   std::array<Matrix3, kMaxLegJoints> rotation;
   std::array<Vector3, kMaxLegJoints> origin;
@@ -167,7 +190,12 @@ void LoadedMechanism::place(int l) {
                             .swings = joint.type == JointType::parallelogram,
                             .bar = link * span,
                             .spring = give > 0.0};
-      if (give > 0.0) leg.compliance(next, next) = give;
+      if (give > 0.0) {
+        Leg::Spring& spring = leg.springs[leg.spring_count++];
+        spring.first = next;
+        spring.beam = false;
+        spring.drive = give;
+      }
       ++next;
     }
     if (joint.type == JointType::prismatic) p += value * axis;
@@ -186,7 +214,10 @@ void LoadedMechanism::place(int l) {
       leg.freedoms[next + 3 + i] = {.axis = F.col(i), .point = p, .turns = true, .spring = true};
       F = F * turn(Vector3::Unit(i), leg.value[next + 3 + i]);
     }
-    leg.compliance.block<6, 6>(next, next) = beam_compliance(beam->rigidity, beam->length);
+    Leg::Spring& spring = leg.springs[leg.spring_count++];
+    spring.first = next;
+    spring.beam = true;
+    spring.compliance = beam_compliance(beam->rigidity, beam->length);
     next += 6;
     R = link = F * beam->frame.transpose();
   }
@@ -308,16 +339,21 @@ LoadedMechanism::Step LoadedMechanism::step(double& size) {
     }
     s.H = s.N * s.B;
     // Springs under f_p and the weights, less what they are deflected by already.
-    const Column springs = leg.compliance * (s.J.transpose() * s.f_p + s.g);
+    const Column loads = s.J.transpose() * s.f_p + s.g;
+    const Column springs = deflected(leg, loads);
     Column held = leg.value;
     for (int i = 0; i < leg.count; ++i) {
       if (!leg.freedoms[i].spring) held[i] = 0.0;
     }
     s.r.setZero();
     s.r.head(wrenches) = s.N * (s.e + s.J * (springs - held));
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, kMaxFreedoms> NJ = s.N * s.J;
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> D =
-        NJ * leg.compliance * NJ.transpose();
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> D(wrenches, wrenches);
+    std::array<Column, 6> loads_of;
+    for (int w = 0; w < wrenches; ++w) {
+      loads_of[w] = s.J.transpose() * s.N.row(w).transpose();
+      const Column moved = deflected(leg, loads_of[w]);
+      for (int v = 0; v <= w; ++v) D(w, v) = D(v, w) = loads_of[v].dot(moved);
+    }
     s.D.compute(D);
     constexpr double kSingular = 1e-13;
     for (int w = 0; w < wrenches; ++w) {
@@ -341,7 +377,8 @@ LoadedMechanism::Step LoadedMechanism::step(double& size) {
     Solved& s = solved[l];
     const int wrenches = static_cast<int>(s.N.rows());
     leg.force = s.f_p + s.N.transpose() * s.D.solve(s.H * dx - s.r.head(wrenches));
-    leg.deflection = leg.compliance * (s.J.transpose() * leg.force + s.g);
+    const Column loads = s.J.transpose() * leg.force + s.g;
+    leg.deflection = deflected(leg, loads);
     Column change = leg.deflection - leg.value;
     for (int i = 0; i < leg.count; ++i) {
       if (!leg.freedoms[i].spring) change[i] = 0.0;
@@ -367,16 +404,25 @@ LoadedMechanism::Step LoadedMechanism::step(double& size) {
   return Step::done;
 }
 
-// d(J_i^T f)/dy_k of loads of fixed direction on a point of the chain: `force` at `at`, `moment` about it.
-// Freedoms are numbered from the base outwards; one further out moves the point alone, one further in turns the
-// axis too.
-double change_of_load(const Freedom& i, const Freedom& k, bool outer, const Vector3& at, const Vector3& force,
-                      const Vector3& moment) {
-  if (outer) return i.turns ? i.axis.dot(velocity(k, at).cross(force)) : 0.0;
-  if (!k.turns) return 0.0;
-  double change = k.axis.cross(velocity(i, at)).dot(force);
-  if (i.turns) change += k.axis.cross(i.axis).dot(moment);
-  return change;
+// Takes d(J_i^T w)/dy_k from A, for a load of fixed direction, `force` at the point `at` and `moment` about it,
+// that the first `count` freedoms move. They are numbered from the base outwards: one further out than i moves
+// the point alone, u_i . (v_k x f); one further in turns the axis of i too, (u_k x v_i) . f + (u_k x u_i) . m.
+void take_turning(const std::array<Freedom, kMaxFreedoms>& freedoms, int count, const Vector3& at,
+                  const Vector3& force, const Vector3& moment, Square& A) {
+  std::array<Vector3, kMaxFreedoms> v, g, h;  // velocity of the point, f x u and m x u of those that turn
+  for (int i = 0; i < count; ++i) {
+    const Freedom& one = freedoms[i];
+    v[i] = velocity(one, at);
+    g[i] = one.turns ? Vector3(force.cross(one.axis)) : Vector3(Vector3::Zero());
+    h[i] = one.turns ? Vector3(moment.cross(one.axis)) : Vector3(Vector3::Zero());
+  }
+  for (int i = 0; i < count; ++i) {
+    for (int k = i; k < count; ++k) A(i, k) -= g[i].dot(v[k]);
+    for (int k = 0; k < i; ++k) {
+      A(i, k) -= g[k].dot(v[i]);
+      if (freedoms[i].turns) A(i, k) -= h[k].dot(freedoms[i].axis);
+    }
+  }
 }
 
 bool LoadedMechanism::tangent(Matrix6& K) {
@@ -392,8 +438,16 @@ bool LoadedMechanism::tangent(Matrix6& K) {
 
     // In springs' own sizes, so that soft and stiff ones are alike: y = S y', equations times S.
     Column scale = Column::Ones(m);
-    for (int i = 0; i < m; ++i) {
-      if (leg.freedoms[i].spring) scale[i] = std::sqrt(leg.compliance(i, i));
+    Square A = Square::Zero(m + height, m + height);
+    for (int k = 0; k < leg.spring_count; ++k) {
+      const Leg::Spring& spring = leg.springs[k];
+      if (spring.beam) {
+        scale.segment<6>(spring.first) = spring.compliance.diagonal().cwiseSqrt();
+        A.block<6, 6>(spring.first, spring.first) = spring.compliance.inverse();
+      } else {
+        scale[spring.first] = std::sqrt(spring.drive);
+        A(spring.first, spring.first) = 1.0 / spring.drive;
+      }
     }
     double size = 0.0;
     for (int i = 0; i < m; ++i) {
@@ -404,43 +458,20 @@ bool LoadedMechanism::tangent(Matrix6& K) {
       if (!leg.freedoms[i].spring) scale[i] = size / std::max(J.col(i).norm(), 1e-12 * length_);
     }
 
-    Square A = Square::Zero(m + height, m + height);
-    // Stiffness of the springs, block by block.
-    for (int i = 0; i < m;) {
-      if (!leg.freedoms[i].spring) {
-        ++i;
-        continue;
-      }
-      const bool single = i + 1 == m || leg.compliance(i, i + 1) == 0.0;
-      const bool beam = i + 6 <= m && leg.freedoms[i].spring && !leg.freedoms[i].turns &&
-                        !leg.freedoms[i].swings && leg.compliance(i + 1, i + 5) != 0.0;
-      if (beam) {
-        A.block<6, 6>(i, i) = Matrix6(leg.compliance.block<6, 6>(i, i)).inverse();
-        i += 6;
-      } else {
-        assert(single);
-        A(i, i) = 1.0 / leg.compliance(i, i);
-        ++i;
-      }
-      (void)single;
-    }
-    for (int i = 0; i < m; ++i) {
-      for (int k = 0; k < m; ++k) {
-        double change = change_of_load(leg.freedoms[i], leg.freedoms[k], k >= i, leg.tip, force, moment);
-        for (int w = 0; loading_.weights && w < leg.weight_count; ++w) {
-          const Weight& weight = leg.weights[w];
-          const Vector3 pull = weight.mass * mechanism_.gravity();
-          if (i < weight.moved_by && k < weight.moved_by)
-            change +=
-                change_of_load(leg.freedoms[i], leg.freedoms[k], k >= i, weight.pin, pull, Vector3::Zero());
-          // The lever turns with all that turn the body.
-          if (i < weight.turned_by && k < weight.turned_by && leg.freedoms[i].turns && leg.freedoms[k].turns) {
-            const Vector3 &u = leg.freedoms[i].axis, &v = leg.freedoms[k].axis;
-            change += u.dot(v.cross(weight.lever).cross(pull));
-            if (k < i) change += v.cross(u).dot(weight.lever.cross(pull));
-          }
+    take_turning(leg.freedoms, m, leg.tip, force, moment, A);
+    for (int w = 0; loading_.weights && w < leg.weight_count; ++w) {
+      const Weight& weight = leg.weights[w];
+      const Vector3 pull = weight.mass * mechanism_.gravity();
+      take_turning(leg.freedoms, weight.moved_by, weight.pin, pull, Vector3::Zero(), A);
+      // The lever turns with all that turn the body.
+      for (int i = 0; i < weight.turned_by; ++i) {
+        if (!leg.freedoms[i].turns) continue;
+        for (int k = 0; k < weight.turned_by; ++k) {
+          if (!leg.freedoms[k].turns) continue;
+          const Vector3 &u = leg.freedoms[i].axis, &v = leg.freedoms[k].axis;
+          A(i, k) -=
+              k < i ? v.cross(u.cross(weight.lever)).dot(pull) : u.cross(v.cross(weight.lever)).dot(pull);
         }
-        A(i, k) -= change;
       }
     }
     A.topRightCorner(m, height) = -J.topRows(height).transpose();

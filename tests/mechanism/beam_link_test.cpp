@@ -72,6 +72,26 @@ TEST(BeamLink, LaminatesByEitherRule) {
   EXPECT_EQ(wall_properties(laminate).density, 1630.0);
 }
 
+TEST(BeamLink, LaminatesAreComparedByBothRules) {
+  LaminateDescription laminate;
+  laminate.lamina.longitudinal_modulus = 300e9;
+  laminate.lamina.transverse_modulus = 12e9;
+  laminate.lamina.shear_modulus = 5e9;
+  laminate.lamina.poisson_ratio = 0.3;
+  laminate.lamina.density = 1630.0;
+  laminate.plies = {{4, 0.0}, {7, 0.5 * std::numbers::pi}};
+  laminate.rule = LaminateRule::mean;
+  Description device = beams();
+  device.bodies[2].beam = TubeDescription{0.015, 0.01, laminate};
+  const std::vector<LaminateComparison> found = laminate_comparisons(device);
+  ASSERT_EQ(found.size(), 1u);  // the others are of steel
+  EXPECT_EQ(found[0].on, "outer_link");
+  EXPECT_EQ(found[0].plies, 11);
+  EXPECT_EQ(found[0].rule, LaminateRule::mean);
+  EXPECT_EQ(found[0].mean.axial, wall_properties(laminate).moduli.axial);
+  EXPECT_EQ(found[0].lamination.axial, wall_properties(laminate, LaminateRule::lamination).moduli.axial);
+}
+
 TEST(BeamLink, AnRCubesLinksAreBeamsOfAllLegs) {
   const Mechanism mechanism(beams());
   ASSERT_EQ(mechanism.beams().size(), 9u);

@@ -74,17 +74,16 @@ void add_at(CLI::App& app, Context& context) {
       "  zwidth at delta --position 0,0,0.15 --only position,force_limits\n"
       "  zwidth at seven-dof --position 0.35,0.05,0.1         the posture nearest to home, however the tool "
       "turns\n"
-      "  zwidth at seven-dof --position 0.35,0.05,0.1 --orientation 0,90deg,0 --keep theta3=10deg\n"
+      "  zwidth at seven-dof --position 0.3,0,0.1 --orientation 0,90deg,0 --keep theta3\n"
       "\nThe load is the force that the device exerts on the user's hand, so torques = gravity_torques + J^T "
-      "load\n"
-      "(at rest). Numbers without a unit are SI: metres, radians, newtons.\n"
+      "load (at rest). Numbers without a unit are SI: metres, radians, newtons.\n"
       "\nAn orientation is R = Rz(yaw) Ry(pitch) Rx(roll), about the fixed axes of the frame, or a quaternion; "
-      "R's\n"
-      "columns are the axes of the tool, as the answer's. Without one an arm of one leg may turn its tool as "
-      "it\n"
-      "likes. Joints that the goal leaves open are chosen by --keep, --near or --maximise: for a position "
-      "alone the\n"
-      "posture nearest to home is the default, a pose of an arm with joints to spare must be given one.");
+      "R's columns are the axes of the tool, as in the answer. Left out, an arm of one leg may turn its tool "
+      "as "
+      "it likes, and other tools keep their axes along those of the base. Joints that the goal leaves open are "
+      "chosen by --keep, --near or --maximise: a position alone takes the posture nearest to home without "
+      "them, "
+      "a pose needs one of them.");
   auto arguments = std::make_shared<at::Arguments>();
   add_device_arguments(*verb, *arguments);
   verb->add_option("--joints", arguments->joints, "values of the active joints, between commas")

@@ -40,15 +40,17 @@ int main(int argc, char** argv) {
       return 1;
     }
 
+    const bool in_plane = mechanism.tool_rows() == 2;
     const Extents extents = workspace_extents(mechanism);
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < (in_plane ? 2 : 3); ++axis) {
       std::printf("%c from %7.1f to %6.1f mm\n", 'x' + axis, 1e3 * extents.range[axis].min,
                   1e3 * extents.range[axis].max);
     }
-    std::printf("volume %.3f litres\n", 1e3 * workspace_volume(mechanism).value);
+    const double size = workspace_volume(mechanism).value;
+    in_plane ? std::printf("area %.1f cm2\n", 1e4 * size) : std::printf("volume %.3f litres\n", 1e3 * size);
     const InscribedShape cube = inscribed_shapes(mechanism).cube;
-    std::printf("largest upright cube %.1f mm, centred at %.1f, %.1f, %.1f mm\n\n", 1e3 * cube.size,
-                1e3 * cube.centre.x(), 1e3 * cube.centre.y(), 1e3 * cube.centre.z());
+    std::printf("largest upright %s %.1f mm, centred at %.1f, %.1f, %.1f mm\n\n", in_plane ? "square" : "cube",
+                1e3 * cube.size, 1e3 * cube.centre.x(), 1e3 * cube.centre.y(), 1e3 * cube.centre.z());
 
     std::printf("condition number from above, at the height of the cube's centre:\n");
     print_map(map_slice(mechanism, extents, 2, cube.centre.z(), 36, DriveLimits{}));

@@ -8,6 +8,7 @@
 
 #include "figure/plot.h"
 #include "figure/solid.h"
+#include "sheet_plane.h"
 #include "terminal.h"
 
 #include "zwidth/mechanism/posture.h"
@@ -458,9 +459,12 @@ SheetFigure margins(const DriveSheet& drive, const std::string& section, const s
 
 std::vector<SheetFigure> sheet_figures(const DataSheet& sheet, const Description& description) {
   std::vector<SheetFigure> figures;
-  if (auto picture =
-          device_picture(sheet, description, sheet.workspace ? sheet.workspace->surface : SurfaceMesh{}))
+  if (sheet.plane) {
+    figures = plane_sheet_figures(sheet, description);
+  } else if (auto picture = device_picture(sheet, description,
+                                           sheet.workspace ? sheet.workspace->surface : SurfaceMesh{})) {
     figures.push_back(std::move(*picture));
+  }
   if (sheet.workspace) {
     const WorkspaceSheet& workspace = *sheet.workspace;
     if (!workspace.surface.triangles.empty()) figures.push_back(workspace_solid(workspace));

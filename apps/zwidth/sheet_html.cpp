@@ -100,7 +100,9 @@ class Page {
     mechanism();
     if (sheet_.arm) arm(*sheet_.arm);
     if (sheet_.workspace) workspace(*sheet_.workspace);
-    if (sheet_.workspace) dexterity(*sheet_.workspace);
+    if (sheet_.plane) plane(*sheet_.plane);
+    if (sheet_.workspace) dexterity(sheet_.workspace->sweep);
+    if (sheet_.plane) dexterity(sheet_.plane->sweep);
     if (sheet_.continuous && sheet_.peak) force();
     inertia();
     stiffness();
@@ -192,6 +194,13 @@ class Page {
         tile(readable(sheet_.arm->peak->weakest_force.mean, "N", 3),
              "force in every direction, peak, mean over postures");
     }
+    if (sheet_.plane) {
+      tile(quantity(sheet_.plane->area.value, 1e4, "cm²", 3), "reachable area");
+      tile(readable(2.0 * sheet_.plane->inscribed.circle().size, "m", 3),
+           "diameter of the largest circle inside");
+    }
+    if (sheet_.conditioning)
+      tile(number(sheet_.conditioning->of_all.index(), 3), "global conditioning index (1 is best)");
     if (sheet_.continuous)
       tile(readable(sheet_.continuous->weakest.min, "N", 3), "force in every direction and place, continuous");
     if (sheet_.peak)
@@ -199,8 +208,8 @@ class Page {
     if (sheet_.inertia)
       tile(readable(sheet_.inertia->heaviest.mean, "kg", 3), "mean apparent mass in the heaviest direction");
     if (sheet_.resolution[0].count > 0) {
-      const double worst =
-          std::max({sheet_.resolution[0].mean, sheet_.resolution[1].mean, sheet_.resolution[2].mean});
+      double worst = 0.0;
+      for (const Statistic& axis : sheet_.resolution) worst = std::max(worst, axis.mean);
       tile(readable(worst, "m", 3), "mean position step at the tool");
     }
     for (const DriveSheet& drive : sheet_.drives) {
@@ -407,22 +416,73 @@ class Page {
     show_figures("workspace");
   }
 
+  const LatticeSweep& sweep() const { return sheet_.plane ? sheet_.plane->sweep : sheet_.workspace->sweep; }
+  size_t axis_count() const { return sheet_.plane ? 2 : 3; }
   static std::string axis(size_t k) { return std::string(1, static_cast<char>('x' + k)); }
 
-  void dexterity(const WorkspaceSheet& workspace) {
+  void plane(const PlaneSheet& plane) {
+    section("workspace", "Workspace");
+    std::string rows = "<tr><th>Quantity</th><th class=\"n\">Value</th><th>Where it comes from</th></tr>";
+    const auto row = [&](const std::string& name, const std::string& value, const std::string& from) {
+      rows += "<tr>" + cell(name) + cell(value, "n") + cell(from, "source") + "</tr>\n";
+    };
+    const std::string within = quantity(plane.area.error_estimate, 1e4, "cm²", 1);
+    row("Area", quantity(plane.area.value, 1e4, "cm²", 5),
+        plane.area.method == WorkspaceVolume::Method::integral
+            ? fmt::format("integral of |det J| over the joint ranges, within {}", within)
+            : fmt::format("enclosed by the boundary, found to 1e-7 m at points {} apart, within {}",
+                          readable(plane.area.spacing, "m", 3), within));
+    row("Area by counting", quantity(plane.sweep.area, 1e4, "cm²", 5),
+        fmt::format("{} points of a {} lattice", plane.sweep.inside,
+                    format_quantity(plane.sweep.spacing, Dimension::length)));
+    for (size_t k = 0; k < 2; ++k) {
+      const Interval& range = plane.extents.range[k];
+      row(fmt::format("Range of {}", axis(k)), interval(range.min, range.max, kMilli, "mm"),
+          fmt::format("{} wide; ends of the workspace itself, not of a lattice",
+                      quantity(range.width(), kMilli, "mm")));
+    }
+    const InscribedShape &circle = plane.inscribed.circle(), &square = plane.inscribed.square();
+    row("Largest circle inside", quantity(2.0 * circle.size, kMilli, "mm") + " diameter",
+        "centre at " + plane_point_text(circle.centre));
+    row("Largest square inside", quantity(square.size, kMilli, "mm") + " edge",
+        "sides along the axes, centre at " + plane_point_text(square.centre));
+    const DexterousRegion& dexterous = plane.dexterous;
+    row(fmt::format("Condition number below {:g}", dexterous.limit), quantity(dexterous.area, 1e4, "cm²", 5),
+        fmt::format("{} % of the area",
+                    plane.area.value > 0.0 ? number(100.0 * dexterous.area / plane.area.value, 3) : "0"));
+    if (dexterous.annulus) {
+      row("The same on every full circle",
+          interval(dexterous.annulus->min, dexterous.annulus->max, kMilli, "mm"),
+          "radius of circles about the origin of the base frame");
+    }
+    body_ += fmt::format("<div class=\"scroll\"><table>{}</table></div>\n", rows);
+    show_figures("workspace");
+  }
+
+  void dexterity(const LatticeSweep& sweep) {
     section("dexterity", "Dexterity");
-    how(fmt::format("At {} lattice points in the workspace.", workspace.sweep.inside));
-    statistics_head(workspace.sweep.spacing);
-    statistics("Condition number of the Jacobian (1 is best)", workspace.sweep[Figure::condition_number], 1.0,
-               "");
-    statistics("Manipulability |det J|", workspace.sweep[Figure::manipulability], 1e6, "cm³/rad³");
-    if (workspace.sweep[Figure::leg_singularity].count > 0) {
-      statistics("Distance to a stretched or folded leg (0 is singular)",
-                 workspace.sweep[Figure::leg_singularity], 1.0, "");
-      statistics("Distance to coplanar forearms (0 is singular)", workspace.sweep[Figure::platform_singularity],
-                 1.0, "");
+    how(fmt::format("At {} lattice points in the workspace.", sweep.inside));
+    statistics_head(sweep.spacing);
+    statistics("Condition number of the Jacobian (1 is best)", sweep[Figure::condition_number], 1.0, "");
+    statistics("Manipulability |det J|", sweep[Figure::manipulability], sheet_.plane ? 1e4 : 1e6,
+               sheet_.plane ? "cm²/rad²" : "cm³/rad³");
+    if (sweep[Figure::leg_singularity].count > 0)
+      statistics("Distance to a stretched or folded leg (0 is singular)", sweep[Figure::leg_singularity], 1.0,
+                 "");
+    if (sweep[Figure::platform_singularity].count > 0) {
+      statistics(sheet_.plane ? "Distance to aligned couplers (0 is singular)"
+                              : "Distance to coplanar forearms (0 is singular)",
+                 sweep[Figure::platform_singularity], 1.0, "");
     }
     statistics_end();
+    if (sheet_.conditioning) {
+      body_ += fmt::format(
+          "<p>Global conditioning index, the mean of 1/K over the {}: <b>{}</b> (Gosselin &amp; Angeles 1991). "
+          "By "
+          "condition number K: {}.</p>\n",
+          sheet_.plane ? "area" : "volume", number(sheet_.conditioning->of_all.index(), 4),
+          escaped(shares_by_class(sheet_.conditioning->of_all)));
+    }
     show_figures("dexterity", "three");
   }
 
@@ -430,14 +490,15 @@ class Page {
     section("force", "Force");
     how("Static forces at the tool within the torque limits of the joints, τ = Jᵀ f; the device's own weight "
         "is not taken off. "
-        "“Every direction” is the radius of the largest ball in the force polytope, “best direction” its "
+        "“Every direction” is the radius of the largest ball (in a plane, circle) in the force polytope, “best "
+        "direction” its "
         "farthest corner.");
     for (const auto& [name, forces] :
          {std::pair{"Continuous", &*sheet_.continuous}, std::pair{"Peak", &*sheet_.peak}}) {
       body_ += fmt::format("<h3>{}: {} per joint, limited by the {}</h3>\n", name,
                            escaped(readable(forces->torque.minCoeff(), "N m")), escaped(forces->limited_by));
-      statistics_head(sheet_.workspace->sweep.spacing);
-      for (size_t k = 0; k < 3; ++k)
+      statistics_head(sweep().spacing);
+      for (size_t k = 0; k < axis_count(); ++k)
         statistics(fmt::format("Pure force along {}", axis(k)), forces->axes[k], 1.0, "N");
       statistics("In every direction", forces->weakest, 1.0, "N");
       statistics("In the best direction", forces->strongest, 1.0, "N");
@@ -451,7 +512,7 @@ class Page {
     section("inertia", "Inertia");
     how("Apparent mass at the tool, free to move sideways, with rotors and transmissions.");
     statistics_head(sheet_.inertia->spacing);
-    for (size_t k = 0; k < 3; ++k)
+    for (size_t k = 0; k < axis_count(); ++k)
       statistics(fmt::format("Along {}", axis(k)), sheet_.inertia->along_axes[k], kMilli, "g");
     statistics("In the lightest direction", sheet_.inertia->lightest, kMilli, "g");
     statistics("In the heaviest direction", sheet_.inertia->heaviest, kMilli, "g");
@@ -484,8 +545,8 @@ class Page {
     section("resolution", "Resolution");
     how("Step of the tool when every joint moves by one encoder count, at worst; step of the force when every "
         "motor changes by one current step.");
-    statistics_head(sheet_.workspace->sweep.spacing);
-    for (size_t k = 0; k < 3; ++k)
+    statistics_head(sweep().spacing);
+    for (size_t k = 0; k < axis_count(); ++k)
       statistics(fmt::format("Position along {}", axis(k)), sheet_.resolution[k], 1e6, "µm");
     statistics_end();
     std::string text;
@@ -500,9 +561,11 @@ class Page {
         "class=\"n\">Torque of one current step</th></tr>{}</table></div>\n",
         text);
     if (sheet_.middle && sheet_.middle->force_resolution) {
-      const Vector3 f = *sheet_.middle->force_resolution * kMilli;
-      how(fmt::format("Force step in the middle of the joint ranges: {}, {}, {} mN along x, y, z.",
-                      number(f.x(), 3), number(f.y(), 3), number(f.z(), 3)));
+      std::string steps;
+      for (const double step : *sheet_.middle->force_resolution)
+        steps += (steps.empty() ? "" : ", ") + number(step * kMilli, 3);
+      how(fmt::format("Force step in the middle of the joint ranges: {} mN along {}.", steps,
+                      sheet_.plane ? "x and y" : "x, y and z"));
     }
   }
 

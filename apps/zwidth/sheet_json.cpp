@@ -75,6 +75,37 @@ Json workspace_json(const WorkspaceSheet& workspace) {
   return entry;
 }
 
+Json plane_json(const PlaneSheet& plane) {
+  Json entry;
+  entry["area"] = json_number(plane.area.value);
+  entry["area_method"] = to_string(plane.area.method);
+  entry["area_error"] = json_number(plane.area.error_estimate);
+  entry["lattice"] = {{"spacing", json_number(plane.sweep.spacing)},
+                      {"points", plane.sweep.lattice_points},
+                      {"inside", plane.sweep.inside},
+                      {"area", json_number(plane.sweep.area)}};
+  entry["ranges"] = {{"x", json_interval(plane.extents.range[0])},
+                     {"y", json_interval(plane.extents.range[1])}};
+  const InscribedShape &circle = plane.inscribed.circle(), &square = plane.inscribed.square();
+  entry["inscribed_circle"] = {{"centre", json_array(circle.centre.head<2>())},
+                               {"radius", json_number(circle.size)}};
+  entry["inscribed_square"] = {{"centre", json_array(square.centre.head<2>())},
+                               {"edge", json_number(square.size)}};
+  entry["dexterous"] = dexterous_json(plane.dexterous);
+  Json figures;
+  for (const Figure which : {Figure::condition_number, Figure::manipulability, Figure::leg_singularity,
+                             Figure::platform_singularity}) {
+    figures[std::string(figure_info(static_cast<int>(which)).name)] = statistic_json(plane.sweep[which]);
+  }
+  entry["figures"] = figures;
+  return entry;
+}
+
+// REQUIRES: a workspace in space or in a plane.
+double lattice_spacing(const DataSheet& sheet) {
+  return (sheet.plane ? sheet.plane->sweep : sheet.workspace->sweep).spacing;
+}
+
 Json posture_json(const PostureSheet& posture) {
   Json entry;
   entry["joints"] = json_array(posture.active);
@@ -187,6 +218,32 @@ Json drive_json(const DriveSheet& sheet) {
 
 }  // namespace
 
+Json conditioning_json(const GlobalConditioning& conditioning) {
+  if (!(conditioning.weight() > 0.0)) return nullptr;
+  static constexpr const char* kClasses[] = {"below_5", "from_5_to_10", "from_10_to_100", "above_100"};
+  Json shares;
+  for (const ConditionClass k : kConditionClasses)
+    shares[kClasses[static_cast<size_t>(k)]] = json_number(conditioning.share(k));
+  return {{"index", json_number(conditioning.index())},
+          {"spread", json_number(conditioning.spread())},
+          {"worst", json_number(conditioning.worst())},
+          {"best", json_number(conditioning.best())},
+          {"shares", shares}};
+}
+
+Json conditioning_json(const WorkspaceConditioning& conditioning) {
+  Json entry = conditioning_json(conditioning.of_all);
+  if (!entry.is_null()) entry["spacing"] = json_number(conditioning.spacing);
+  return entry;
+}
+
+Json dexterous_json(const DexterousRegion& region) {
+  return {{"limit", json_number(region.limit)},
+          {"area", json_number(region.area)},
+          {"area_error", json_number(region.error_estimate)},
+          {"annulus", region.annulus ? json_interval(*region.annulus) : Json(nullptr)}};
+}
+
 Json statistic_json(const Statistic& statistic) {
   if (statistic.count == 0) return nullptr;
   Json entry;
@@ -250,11 +307,14 @@ Json data_sheet_json(const DataSheet& sheet, const Description& description) {
   if (!sheet.arm) notes["arm"] = "of a tool that also turns";
   if (sheet.workspace) {
     document["workspace"] = workspace_json(*sheet.workspace);
+  } else if (sheet.plane) {
+    document["workspace"] = plane_json(*sheet.plane);
   } else {
     absent("workspace", "defined for three active joints and a tool that only translates");
   }
+  if (sheet.conditioning) document["conditioning"] = conditioning_json(*sheet.conditioning);
   if (sheet.continuous && sheet.peak) {
-    document["forces"] = {{"spacing", json_number(sheet.workspace->sweep.spacing)},
+    document["forces"] = {{"spacing", json_number(lattice_spacing(sheet))},
                           {"continuous", force_json(*sheet.continuous)},
                           {"peak", force_json(*sheet.peak)}};
   } else {
@@ -279,7 +339,7 @@ Json data_sheet_json(const DataSheet& sheet, const Description& description) {
   Json resolution;
   resolution["joint"] = json_array(sheet.joint_resolution);
   resolution["torque"] = json_array(sheet.torque_resolution);
-  if (sheet.workspace) resolution["spacing"] = json_number(sheet.workspace->sweep.spacing);
+  if (sheet.workspace || sheet.plane) resolution["spacing"] = json_number(lattice_spacing(sheet));
   resolution["position"] = axes_json(sheet.resolution);
   document["resolution"] = resolution;
   if (sheet.middle) {

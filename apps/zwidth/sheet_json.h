@@ -10,6 +10,9 @@ namespace zwidth {
 Json data_sheet_json(const DataSheet& sheet, const Description& description);
 
 /// Minimum, maximum and mean, and where they are; null where the figure is not defined.
+Json conditioning_json(const GlobalConditioning& conditioning);
+Json conditioning_json(const WorkspaceConditioning& conditioning);
+Json dexterous_json(const DexterousRegion& region);
 Json statistic_json(const Statistic& statistic);
 Json margin_json(const Margin& margin);
 

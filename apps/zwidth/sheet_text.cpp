@@ -79,7 +79,9 @@ class SheetText {
     identity();
     if (sheet_.arm) arm(*sheet_.arm);
     if (sheet_.workspace) workspace(*sheet_.workspace);
-    if (sheet_.workspace) dexterity(*sheet_.workspace);
+    if (sheet_.plane) plane(*sheet_.plane);
+    if (sheet_.workspace) dexterity(sheet_.workspace->sweep, 3);
+    if (sheet_.plane) dexterity(sheet_.plane->sweep, 2);
     if (sheet_.continuous && sheet_.peak) forces();
     if (sheet_.inertia) inertia(*sheet_.inertia);
     stiffness();
@@ -92,6 +94,10 @@ class SheetText {
 
  private:
   const Terminal& terminal() const { return text_.terminal(); }
+  double lattice_spacing() const {
+    return (sheet_.plane ? sheet_.plane->sweep : sheet_.workspace->sweep).spacing;
+  }
+  size_t axis_count() const { return sheet_.plane ? 2 : 3; }
   bool wide() const { return terminal().width >= 110; }
 
   void identity() {
@@ -143,6 +149,45 @@ class SheetText {
     text_.row("largest cube", fmt::format("{} edge", quantity(inscribed.cube.size, kMilli, "mm")),
               "centre " + point_text(inscribed.cube.centre));
     silhouettes(workspace);
+  }
+
+  void plane(const PlaneSheet& plane) {
+    text_.heading("Workspace");
+    const bool integral = plane.area.method == WorkspaceVolume::Method::integral;
+    text_.row("area", quantity(plane.area.value, 1e4, "cm²", 5),
+              fmt::format("{}, within {}", integral ? "integral of |det J|" : "enclosed by its boundary",
+                          quantity(plane.area.error_estimate, 1e4, "cm²", 1)));
+    text_.row("", quantity(plane.sweep.area, 1e4, "cm²", 5),
+              fmt::format("{} points of a {} lattice", plane.sweep.inside,
+                          format_quantity(plane.sweep.spacing, Dimension::length)));
+    for (size_t k = 0; k < 2; ++k) {
+      const Interval& range = plane.extents.range[k];
+      text_.row(fmt::format("range of {}", static_cast<char>('x' + k)),
+                interval(range.min, range.max, kMilli, "mm"), quantity(range.width(), kMilli, "mm wide"));
+    }
+    const InscribedShape &circle = plane.inscribed.circle(), &square = plane.inscribed.square();
+    text_.row("largest circle", fmt::format("{} diameter", quantity(2.0 * circle.size, kMilli, "mm")),
+              "centre " + plane_point_text(circle.centre));
+    text_.row("largest square", fmt::format("{} edge", quantity(square.size, kMilli, "mm")),
+              "centre " + plane_point_text(square.centre));
+    const DexterousRegion& dexterous = plane.dexterous;
+    text_.row(fmt::format("condition number < {:g}", dexterous.limit), quantity(dexterous.area, 1e4, "cm²", 4),
+              plane.area.value > 0.0
+                  ? fmt::format("{} % of the area", number(100.0 * dexterous.area / plane.area.value, 3))
+                  : "");
+    if (dexterous.annulus) {
+      text_.row("on every full circle", interval(dexterous.annulus->min, dexterous.annulus->max, kMilli, "mm"),
+                "radius about the origin");
+    }
+    if (plane.map.nu == 0) return;
+    text_.gap();
+    const int room = wide() ? 56 : 44;
+    const Silhouette picture(plane.map, plane.map.u_range.width() / room / (terminal().unicode ? 2.0 : 1.0),
+                             terminal().unicode);
+    for (int row = 0; row < picture.height(); ++row) {
+      text_.line("  " + tinted(terminal(), Tint::accent, picture.line(row)));
+    }
+    text_.line(tinted(terminal(), Tint::dim, "  the plane of x (right) and y (up)"));
   }
 
   void silhouettes(const WorkspaceSheet& workspace) {
@@ -219,17 +264,26 @@ class SheetText {
                 rows);
   }
 
-  void dexterity(const WorkspaceSheet& workspace) {
+  void dexterity(const LatticeSweep& sweep, int dimension) {
     text_.heading("Dexterity over the workspace");
     std::vector<std::vector<std::string>> rows;
-    rows.push_back(cells("condition number", workspace.sweep[Figure::condition_number], 1.0, ""));
-    rows.push_back(cells("manipulability", workspace.sweep[Figure::manipulability], 1e6, "cm³/rad³"));
-    if (workspace.sweep[Figure::leg_singularity].count > 0) {
-      rows.push_back(
-          cells("leg singularity (0 = singular)", workspace.sweep[Figure::leg_singularity], 1.0, ""));
-      rows.push_back(cells("platform singularity", workspace.sweep[Figure::platform_singularity], 1.0, ""));
+    rows.push_back(cells("condition number", sweep[Figure::condition_number], 1.0, ""));
+    rows.push_back(cells("manipulability", sweep[Figure::manipulability], dimension == 2 ? 1e4 : 1e6,
+                         dimension == 2 ? "cm²/rad²" : "cm³/rad³"));
+    if (sweep[Figure::leg_singularity].count > 0)
+      rows.push_back(cells("leg singularity (0 = singular)", sweep[Figure::leg_singularity], 1.0, ""));
+    if (sweep[Figure::platform_singularity].count > 0) {
+      rows.push_back(cells(dimension == 2 ? "coupler singularity" : "platform singularity",
+                           sweep[Figure::platform_singularity], 1.0, ""));
     }
-    statistics(rows, workspace.sweep.spacing);
+    statistics(rows, sweep.spacing);
+    if (!sheet_.conditioning) return;
+    const GlobalConditioning& conditioning = sheet_.conditioning->of_all;
+    text_.row("global conditioning", number(conditioning.index(), 4),
+              "mean of 1/(condition number); 1 is isotropic everywhere");
+    text_.paragraph(fmt::format("Share of the {} by condition number K: {}.",
+                                dimension == 2 ? "area" : "volume", shares_by_class(conditioning)),
+                    2, Tint::dim);
   }
 
   void forces() {
@@ -238,13 +292,13 @@ class SheetText {
     for (const auto& [name, forces] :
          {std::pair{"continuous", &*sheet_.continuous}, std::pair{"peak", &*sheet_.peak}}) {
       const char* axes = "xyz";
-      for (size_t k = 0; k < 3; ++k) {
+      for (size_t k = 0; k < axis_count(); ++k) {
         rows.push_back(cells(fmt::format("{}, along {}", name, axes[k]), forces->axes[k], 1.0, "N"));
       }
       rows.push_back(cells(fmt::format("{}, in every direction", name), forces->weakest, 1.0, "N"));
       rows.push_back(cells(fmt::format("{}, in the best direction", name), forces->strongest, 1.0, "N"));
     }
-    statistics(rows, sheet_.workspace->sweep.spacing);
+    statistics(rows, lattice_spacing());
     const auto torque = [](const ForceSheet& forces) {
       const bool same = (forces.torque.array() == forces.torque[0]).all();
       return same ? readable(forces.torque[0], "N m")
@@ -263,7 +317,7 @@ class SheetText {
     text_.heading("Inertia felt at the tool");
     std::vector<std::vector<std::string>> rows;
     const char* axes = "xyz";
-    for (size_t k = 0; k < 3; ++k)
+    for (size_t k = 0; k < axis_count(); ++k)
       rows.push_back(cells(fmt::format("apparent mass along {}", axes[k]), inertia.along_axes[k], kMilli, "g"));
     rows.push_back(cells("in the lightest direction", inertia.lightest, kMilli, "g"));
     rows.push_back(cells("in the heaviest direction", inertia.heaviest, kMilli, "g"));
@@ -287,14 +341,13 @@ class SheetText {
     text_.heading("Resolution at the tool");
     std::vector<std::vector<std::string>> rows;
     const char* axes = "xyz";
-    for (size_t k = 0; k < 3; ++k)
+    for (size_t k = 0; k < axis_count(); ++k)
       rows.push_back(cells(fmt::format("smallest step along {}", axes[k]), sheet_.resolution[k], 1e6, "µm"));
-    statistics(rows, sheet_.workspace->sweep.spacing);
+    statistics(rows, lattice_spacing());
     if (sheet_.middle && sheet_.middle->force_resolution) {
-      const Vector3 f = *sheet_.middle->force_resolution * kMilli;
-      text_.row("force step, mid-range",
-                fmt::format("{} {} {} mN", number(f.x(), 3), number(f.y(), 3), number(f.z(), 3)),
-                "one current step in every motor");
+      std::string steps;
+      for (const double step : *sheet_.middle->force_resolution) steps += number(step * kMilli, 3) + " ";
+      text_.row("force step, mid-range", steps + "mN", "one current step in every motor");
     }
   }
 
@@ -401,6 +454,15 @@ class SheetText {
 };
 
 }  // namespace
+
+std::string shares_by_class(const GlobalConditioning& conditioning) {
+  std::string text;
+  for (const ConditionClass k : kConditionClasses) {
+    text += fmt::format("{}{}: {} %", text.empty() ? "" : ", ", to_string(k),
+                        number(100.0 * conditioning.share(k), 3));
+  }
+  return text;
+}
 
 std::string in_words(std::string_view key) {
   std::string words(key);

@@ -11,6 +11,9 @@ namespace zwidth {
 /// A data sheet for a terminal, without the notes about files.
 std::string data_sheet_text(const DataSheet& sheet, const Description& description, const Terminal& terminal);
 
+/// "K < 5: 81 %, 5 to 10: 12 %, ...".
+std::string shares_by_class(const GlobalConditioning& conditioning);
+
 /// "leg singularity" of "leg_singularity".
 std::string in_words(std::string_view key);
 

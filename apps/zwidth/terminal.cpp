@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <langinfo.h>
+#include <span>
 #include <sys/ioctl.h>
 #include <unistd.h>
 #include <utility>
@@ -313,13 +314,25 @@ std::string trimmed(double value, int digits) {
   return text;
 }
 
-std::string point_text(const Vector3& position) {
+namespace {
+
+std::string millimetre_tuple(std::span<const double> values) {
   std::string text;
-  for (const double value : position) {
+  for (const double value : values) {
     const double rounded = std::round(value * kMilli * 10.0) / 10.0;
     text += fmt::format("{}{:.1f}", text.empty() ? "(" : ", ", rounded == 0.0 ? 0.0 : rounded);
   }
   return text + ") mm";
+}
+
+}  // namespace
+
+std::string point_text(const Vector3& position) {
+  return millimetre_tuple({position.data(), 3});
+}
+
+std::string plane_point_text(const Vector3& position) {
+  return millimetre_tuple({position.data(), 2});
 }
 
 std::string quantity(double value, double factor, std::string_view unit, int digits) {

@@ -94,6 +94,8 @@ std::string number(double value, int digits = 4);
 std::string trimmed(double value, int digits = 6);
 /// "(x, y, z) mm" of a position [m].
 std::string point_text(const Vector3& position);
+/// "(x, y) mm" of a position [m].
+std::string plane_point_text(const Vector3& position);
 /// "min … max unit".
 std::string interval(double min, double max, double factor, std::string_view unit, int digits = 4);
 

@@ -14,7 +14,9 @@
 #include "interrupt.h"
 #include "model.h"
 #include "sheet_json.h"
+#include "sheet_text.h"
 #include "verbs.h"
+#include "workspace_verb.h"
 
 #include "zwidth/analysis/data_sheet.h"
 #include "zwidth/description/units.h"
@@ -24,18 +26,15 @@ namespace zwidth {
 
 namespace {
 
-struct WorkspaceArguments : DeviceArguments {
-  std::string grid = "1mm";
-  std::string map;
-  std::string figure;
-  bool all = false;
-};
-
 std::string statistics_factor(std::string_view unit, double& factor) {
   factor = 1.0;
   if (unit == "m^3/rad^3") {
     factor = 1e6;
     return "cm³/rad³";
+  }
+  if (unit == "m^2/rad^2") {
+    factor = 1e4;
+    return "cm²/rad²";
   }
   if (unit == "m") {
     factor = 1e6;
@@ -44,8 +43,9 @@ std::string statistics_factor(std::string_view unit, double& factor) {
   return unit == "1" ? "" : std::string(unit);
 }
 
-/// A gnuplot data block of one figure of a slice.
-std::string block(const SliceMap& map, Figure figure, const std::string& name) {
+}  // namespace
+
+std::string gnuplot_block(const SliceMap& map, Figure figure, const std::string& name) {
   std::string text = "$" + name + " << EOD\n";
   const auto& values = map.values[static_cast<size_t>(figure)];
   for (int v = 0; v < map.nv; ++v) {
@@ -59,7 +59,7 @@ std::string block(const SliceMap& map, Figure figure, const std::string& name) {
   return text + "EOD\n";
 }
 
-std::string outlines(const Slice& slice, const std::string& name) {
+std::string gnuplot_outlines(const Slice& slice, const std::string& name) {
   std::string text = "$" + name + " << EOD\n";
   for (const Outline& outline : slice.outlines) {
     for (const auto& point : outline)
@@ -70,18 +70,140 @@ std::string outlines(const Slice& slice, const std::string& name) {
   return text + "EOD\n";
 }
 
-/// Three cuts with their condition number, and the surface, on one sheet.
-void draw(const Model& model, const Extents& extents, const DriveLimits& limits, const std::string& path) {
+std::string gnuplot_terminal(const std::string& path, double width, double height) {
   const std::string extension = path.substr(std::min(path.size(), path.rfind('.')));
   std::string terminal;
-  if (extension == ".svg") terminal = "svg size 1000,860 font 'sans,13' background 'white'";
-  if (extension == ".png") terminal = "pngcairo size 2000,1720 fontscale 1.6 linewidth 2 background 'white'";
-  if (extension == ".pdf") terminal = "pdfcairo size 20cm,17.2cm font 'sans,10' background 'white'";
+  if (extension == ".svg")
+    terminal = fmt::format("svg size {:.0f},{:.0f} font 'sans,13' background 'white'", width, height);
+  if (extension == ".png") {
+    terminal = fmt::format("pngcairo size {:.0f},{:.0f} fontscale 1.6 linewidth 2 background 'white'",
+                           2.0 * width, 2.0 * height);
+  }
+  if (extension == ".pdf") {
+    terminal = fmt::format("pdfcairo size {:.1f}cm,{:.1f}cm font 'sans,10' background 'white'", 0.02 * width,
+                           0.02 * height);
+  }
   // gnuplot opens the file itself, and says little when it cannot.
   write_file(path, "");
   std::string quoted;
   for (const char c : path) quoted += c == '\'' ? "''" : std::string(1, c);
-  std::string script = fmt::format("set terminal {}\nset output '{}'\n", terminal, quoted);
+  return fmt::format("set terminal {}\nset output '{}'\n", terminal, quoted);
+}
+
+std::string gnuplot_palette() {
+  std::string stops;
+  for (int i = 0; i <= 12; ++i) stops += fmt::format("{}{} '{}'", i > 0 ? ", " : "", i, map_colour(i / 12.0));
+  return fmt::format("set palette defined ({})\n", stops);
+}
+
+void read_figures(const LatticeSweep& sweep, int dimension, bool all, bool driven, Json& document,
+                  std::vector<std::vector<std::string>>& rows) {
+  Json figures;
+  Json notes;
+  for (int k = 0; k < (all ? kFigureCount : kCoreFigureCount); ++k) {
+    const FigureInfo& info = dimension == 2 ? plane_figure_info(k) : figure_info(k);
+    if (dimension == 2 && info.name.ends_with("_z")) continue;
+    const bool needs_drives = info.unit == "N" || info.unit == "m";
+    const Statistic& statistic = sweep.figures[static_cast<size_t>(k)];
+    const std::string key(info.name);
+    if (needs_drives && !driven) {
+      figures[key] = nullptr;
+      notes[key] = "some joints have no drive";
+      continue;
+    }
+    figures[key] = statistic_json(statistic);
+    if (statistic.count == 0) {
+      notes[key] = "not defined for this mechanism";
+      continue;
+    }
+    double factor = 1.0;
+    const std::string unit = statistics_factor(info.unit, factor);
+    rows.push_back({std::string(info.name), number(statistic.min * factor), number(statistic.mean * factor),
+                    number(statistic.max * factor), unit});
+    std::replace(rows.back()[0].begin(), rows.back()[0].end(), '_', ' ');
+  }
+  document["figures"] = figures;
+  if (!notes.empty()) document["notes"] = notes;
+}
+
+void print_conditioning(const GlobalConditioning& conditioning, int dimension, Sheet& sheet) {
+  sheet.row("global conditioning", number(conditioning.index(), 4),
+            "mean of 1/(condition number K), 1 is best");
+  sheet.paragraph(fmt::format("Share of the {} by K: {}.", dimension == 2 ? "area" : "volume",
+                              shares_by_class(conditioning)),
+                  2, Tint::dim);
+}
+
+namespace {
+
+/// Two devices on a common lattice. Throws InputError if they are not of one kind.
+int compare(const WorkspaceArguments& arguments, const Model& model, double spacing, const Terminal& terminal) {
+  DeviceArguments wanted;
+  wanted.device = arguments.against;
+  const Model other(read_device(wanted));
+  const std::string first = model.description.name, second = other.description.name == first
+                                                                 ? other.description.name + " (as it comes)"
+                                                                 : other.description.name;
+  if (const auto obstacle = workspace_obstacle(other.mechanism))
+    throw InputError(fmt::format("--against {}: {}", arguments.against, *obstacle));
+  const bool plane = in_plane(model.mechanism);
+  if (plane != in_plane(other.mechanism)) {
+    throw InputError(
+        fmt::format("--against {}: one tool moves in a plane and the other in space; name two devices "
+                    "of one kind",
+                    arguments.against));
+  }
+  WorkspaceComparison comparison;
+  try {
+    Effort effort;
+    effort.cancel = &stop_on_interrupt();
+    comparison = compare_workspaces(model.mechanism, other.mechanism, spacing, effort);
+  } catch (const std::length_error& error) {
+    throw InputError(fmt::format("--grid {}: {}; take a coarser grid", arguments.grid, error.what()));
+  }
+  const std::array<std::pair<const char*, double>, 5> figures = {{{"first", comparison.first},
+                                                                  {"second", comparison.second},
+                                                                  {"both", comparison.both},
+                                                                  {"only_first", comparison.only_first},
+                                                                  {"only_second", comparison.only_second}}};
+  if (!comparison.complete) complain("stopped before the end: the figures cover a part of the workspace only");
+  const int exit = comparison.complete ? kDone : kNo;
+  if (arguments.json) {
+    Json document;
+    document["device"] = first;
+    document["against"] = other.description.name;
+    document["grid"] = json_number(comparison.spacing);
+    document["complete"] = comparison.complete;
+    document["measure"] = plane ? "area" : "volume";
+    for (size_t f = 0; f < figures.size(); ++f) {
+      document[figures[f].first] = {{"value", json_number(figures[f].second)},
+                                    {"error", json_number(comparison.error[f])}};
+    }
+    print_json(document);
+    return exit;
+  }
+  Sheet sheet(terminal);
+  sheet.title(fmt::format("{} against {}", first, second),
+              fmt::format("common lattice of {}", format_quantity(comparison.spacing, Dimension::length)));
+  const double factor = plane ? 1e4 : 1e6;
+  const char* unit = plane ? "cm²" : "cm³";
+  const std::array<std::string, 5> names = {first, second, "both", "only " + first, "only " + second};
+  std::vector<std::vector<std::string>> rows;
+  for (size_t f = 0; f < figures.size(); ++f) {
+    rows.push_back({names[f], quantity(figures[f].second, factor, unit, 5),
+                    "± " + quantity(comparison.error[f], factor, unit, 2),
+                    comparison.second > 0.0
+                        ? fmt::format("{} %", number(100.0 * figures[f].second / comparison.second, 4))
+                        : "–"});
+  }
+  sheet.table({plane ? "reachable area" : "reachable volume", "", "", "of " + second}, rows);
+  print(sheet.text());
+  return exit;
+}
+
+/// Three cuts with their condition number, and the surface, on one sheet.
+void draw(const Model& model, const Extents& extents, const DriveLimits& limits, const std::string& path) {
+  std::string script = gnuplot_terminal(path, 1000.0, 860.0);
   const char* axes = "xyz";
   double worst = 1.0;
   std::vector<SliceMap> maps;
@@ -94,8 +216,8 @@ void draw(const Model& model, const Extents& extents, const DriveLimits& limits,
   }
   worst = std::min(worst, 50.0);
   for (size_t i = 0; i < maps.size(); ++i) {
-    script += block(maps[i], Figure::condition_number, fmt::format("map{}", i));
-    script += outlines(maps[i].slice, fmt::format("edge{}", i));
+    script += gnuplot_block(maps[i], Figure::condition_number, fmt::format("map{}", i));
+    script += gnuplot_outlines(maps[i].slice, fmt::format("edge{}", i));
   }
   const SurfaceMesh mesh = workspace_surface(model.mechanism, 16);
   script += "$mesh << EOD\n";
@@ -119,14 +241,12 @@ void draw(const Model& model, const Extents& extents, const DriveLimits& limits,
     script += "\n\n";
   }
   script += "EOD\n";
-  std::string stops;
-  for (int i = 0; i <= 12; ++i) stops += fmt::format("{}{} '{}'", i > 0 ? ", " : "", i, map_colour(i / 12.0));
   script += fmt::format(
       "set multiplot layout 2,2 margins 0.08,0.95,0.08,0.92 spacing 0.13,0.12 title 'Workspace of {}: "
       "condition number of the Jacobian on three cuts'\n"
-      "set palette defined ({})\nset cbrange [1:{:g}]\nset size ratio -1\nset grid front lc rgb '#dddddd'\nset "
+      "{}set cbrange [1:{:g}]\nset size ratio -1\nset grid front lc rgb '#dddddd'\nset "
       "border lc rgb '#888888'\nset tics textcolor rgb '#444444'\nunset key\n",
-      model.description.name, stops, worst);
+      model.description.name, gnuplot_palette(), worst);
   for (size_t i = 0; i < maps.size(); ++i) {
     const SliceMap& map = maps[i];
     const double du = map.u_range.width() / std::max(1, map.nu - 1) * kMilli;
@@ -170,6 +290,9 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
   if (const auto obstacle = workspace_obstacle(model.mechanism)) {
     throw InputError(fmt::format("{}: {}", model.description.name, *obstacle));
   }
+  if (!arguments.against.empty())
+    return compare(arguments, model, arguments.grid_given ? *grid.value : 0.0, terminal);
+  if (in_plane(model.mechanism)) return plane_workspace(arguments, model, *grid.value, terminal);
   const bool driven = model.driven();
   LatticeOptions options;
   options.spacing = *grid.value;
@@ -233,33 +356,13 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
     document["inscribed_cube"] = {{"centre", json_array(inscribed.cube.centre)},
                                   {"edge", json_number(inscribed.cube.size)}};
   }
-  Json figures;
-  Json notes;
+  const WorkspaceConditioning conditioning =
+      sweep.complete ? sweep_conditioning(model.mechanism, 2.0 * options.spacing, {.cancel = effort.cancel})
+                     : WorkspaceConditioning{};
+  if (sweep.complete) document["conditioning"] = conditioning_json(conditioning);
   Sheet sheet(terminal);
   std::vector<std::vector<std::string>> rows;
-  for (int k = 0; k < (arguments.all ? kFigureCount : kCoreFigureCount); ++k) {
-    const FigureInfo& info = figure_info(k);
-    const bool needs_drives = info.unit == "N" || info.unit == "m";
-    const Statistic& statistic = sweep.figures[static_cast<size_t>(k)];
-    const std::string key(info.name);
-    if (needs_drives && !driven) {
-      figures[key] = nullptr;
-      notes[key] = "some joints have no drive";
-      continue;
-    }
-    figures[key] = statistic_json(statistic);
-    if (statistic.count == 0) {
-      notes[key] = "not defined for this mechanism";
-      continue;
-    }
-    double factor = 1.0;
-    const std::string unit = statistics_factor(info.unit, factor);
-    rows.push_back({std::string(info.name), number(statistic.min * factor), number(statistic.mean * factor),
-                    number(statistic.max * factor), unit});
-    std::replace(rows.back()[0].begin(), rows.back()[0].end(), '_', ' ');
-  }
-  document["figures"] = figures;
-  if (!notes.empty()) document["notes"] = notes;
+  read_figures(sweep, 3, arguments.all, driven, document, rows);
   if (!sweep.complete) complain("stopped before the end: the figures cover a part of the workspace only");
   if (arguments.json) {
     print_json(document);
@@ -288,6 +391,7 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
   }
   sheet.heading("Figures over the workspace");
   sheet.table({"", "min", "mean", "max", ""}, rows);
+  if (sweep.complete) print_conditioning(conditioning.of_all, 3, sheet);
   if (driven) sheet.paragraph("Forces with the continuous torque of the drives.", 2, Tint::dim);
   if (!arguments.map.empty() && sweep.complete) sheet.paragraph("map: " + arguments.map, 2, Tint::dim);
   if (!arguments.figure.empty() && sweep.complete) sheet.paragraph("figure: " + arguments.figure, 2, Tint::dim);
@@ -299,22 +403,29 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
 
 void add_workspace(CLI::App& app, Context& context) {
   CLI::App* verb =
-      add_verb(app, "workspace", "Reachable volume, ranges, inscribed shapes, and maps",
+      add_verb(app, "workspace", "Reachable volume or area, ranges, inscribed shapes, maps, comparison",
                "  zwidth workspace delta\n"
                "  zwidth workspace delta --grid 0.5mm --all-figures\n"
                "  zwidth workspace delta --grid 2mm --map delta.csv         one row per point\n"
                "  zwidth workspace delta --figure delta.pdf                 cuts and surface (needs gnuplot)\n"
+               "  zwidth workspace delta --set mechanism.forearm=\"170 mm\" --against delta\n"
                "\nCtrl-C stops with what there is, and exits 1.");
   auto arguments = std::make_shared<WorkspaceArguments>();
   add_device_arguments(*verb, *arguments);
-  verb->add_option("--grid", arguments->grid, "spacing of the lattice, 1mm if not given")->type_name("LENGTH");
+  CLI::Option* grid = verb->add_option("--grid", arguments->grid, "spacing of the lattice, 1mm if not given")
+                          ->type_name("LENGTH");
+  verb->add_option(
+          "--against", arguments->against,
+          "compare with another device: what both reach, and what only one does; --set does not change it")
+      ->type_name("DEVICE");
   verb->add_option("--map", arguments->map, "write figures at every point inside: FILE.csv or FILE.npy")
       ->type_name("FILE");
   verb->add_option("--figure", arguments->figure, "draw cuts and surface: FILE.svg, .png or .pdf")
       ->type_name("FILE");
   verb->add_flag("--all-figures", arguments->all,
                  "also polytope forces, resolution and distances to singularities");
-  verb->callback([arguments, &context] {
+  verb->callback([arguments, grid, &context] {
+    arguments->grid_given = grid->count() > 0;
     context.run = [arguments, &context] { return workspace(*arguments, context.terminal); };
   });
 }

@@ -9,6 +9,7 @@
 #include "zwidth/description/names.h"
 #include "zwidth/description/units.h"
 #include "zwidth/description/values.h"
+#include "zwidth/mechanism/family_of.h"
 #include "zwidth/mechanism/jacobian.h"
 
 namespace zwidth {
@@ -186,7 +187,7 @@ std::optional<PostureSheet> middle_posture(const Mechanism& mechanism, const Dat
   if (!solution) return std::nullopt;
   const Posture& posture = *solution.posture;
   const Rates rate = rates(posture);
-  const Jacobian J = rate.tool.topRows(3);
+  const Jacobian J = rate.tool.topRows(internal::tool_dimension(mechanism));
 
   PostureSheet middle;
   middle.active = active;
@@ -240,6 +241,44 @@ ArmSheet arm_of(const Mechanism& mechanism, const std::vector<std::optional<Driv
   ArmSheetOptions arm{.effort = options.effort};
   if (options.slice_points <= 1) arm.slice_postures = 0;
   return arm_sheet(mechanism, source(false), source(true), stepped ? joint_step : ActiveVector(), arm);
+}
+
+WorkspaceSheet workspace_sheet(const Mechanism& mechanism, const LatticeOptions& lattice,
+                               const DataSheetOptions& options) {
+  WorkspaceSheet workspace;
+  workspace.sweep = sweep_workspace(mechanism, lattice, options.effort);
+  workspace.extents = workspace_extents(mechanism);
+  workspace.volume = workspace_volume(mechanism, {.threads = options.effort.threads});
+  workspace.inscribed = inscribed_shapes(mechanism);
+  for (int axis = 0; axis < 3 && options.slice_points > 1; ++axis) {
+    workspace.slices[axis] =
+        map_slice(mechanism, workspace.extents, axis, workspace.extents.range[axis].middle(),
+                  options.slice_points, lattice.limits);
+  }
+  if (options.surface_divisions > 0)
+    workspace.surface = workspace_surface(mechanism, options.surface_divisions);
+  return workspace;
+}
+
+PlaneSheet plane_sheet(const Mechanism& mechanism, const LatticeOptions& lattice,
+                       const DataSheetOptions& options) {
+  PlaneSheet plane;
+  plane.sweep = sweep_workspace(mechanism, lattice, options.effort);
+  plane.extents = workspace_extents(mechanism);
+  plane.area = workspace_volume(mechanism, {.threads = options.effort.threads});
+  plane.inscribed = inscribed_shapes(mechanism);
+  plane.dexterous = dexterous_region(mechanism, plane.extents);
+  if (options.slice_points > 1) {
+    plane.map = map_slice(mechanism, plane.extents, 2, 0.0, 2 * options.slice_points - 1, lattice.limits);
+    for (const double limit : {5.0, 10.0, 100.0})
+      plane.condition_regions.push_back(condition_region(mechanism, plane.map, limit));
+    if (const auto* five_bar = five_bar_of(mechanism)) {
+      const FiveBarCurveOptions own{.mode = working_mode(*five_bar),
+                                    .ranges = {five_bar->left_range, five_bar->right_range}};
+      plane.singular_curves = singular_curves(five_bar_geometry(*five_bar), own);
+    }
+  }
+  return plane;
 }
 
 void add_drive_warnings(DataSheet& sheet) {
@@ -353,31 +392,34 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
     return sheet;
   }
 
-  const bool batch = mechanism.delta().has_value();
-  WorkspaceSheet workspace;
-  workspace.extents = workspace_extents(mechanism);
-  const double least = batch ? 0.0 : options.general_spacing;
-  const double spacing = fitting(workspace.extents, std::max(options.spacing, least),
-                                 batch ? options.most_points : options.most_costly_points);
+  const bool in_plane = internal::tool_dimension(mechanism) == 2;
+  const bool batch = mechanism.delta().has_value(), fast = internal::Probe(mechanism).fast();
+  const Extents extents = workspace_extents(mechanism);
+  const double least = fast ? 0.0 : options.general_spacing;
+  // Without batch kernels a point in closed form costs some ten times as much.
+  const double most = batch  ? options.most_points
+                      : fast ? 0.1 * options.most_points
+                             : options.most_costly_points;
+  const double spacing = fitting(extents, std::max(options.spacing, least), most);
   const double inertia_spacing =
-      fitting(workspace.extents, std::max(options.inertia_spacing, least), options.most_costly_points);
+      fitting(extents, std::max(options.inertia_spacing, least), options.most_costly_points);
   const DriveLimits limits = drive_limits(drives, false);
+  const LatticeOptions lattice{.spacing = spacing, .limits = limits, .all_figures = true};
 
-  workspace.sweep =
-      sweep_workspace(mechanism, {.spacing = spacing, .limits = limits, .all_figures = true}, options.effort);
-  sheet.complete = workspace.sweep.complete;
-  workspace.volume = workspace_volume(mechanism, {.threads = options.effort.threads});
-  workspace.inscribed = inscribed_shapes(mechanism);
-  for (int axis = 0; axis < 3 && options.slice_points > 1; ++axis) {
-    workspace.slices[axis] = map_slice(mechanism, workspace.extents, axis,
-                                       workspace.extents.range[axis].middle(), options.slice_points, limits);
+  if (in_plane) {
+    sheet.plane = plane_sheet(mechanism, lattice, options);
+  } else {
+    sheet.workspace = workspace_sheet(mechanism, lattice, options);
   }
-  if (options.surface_divisions > 0)
-    workspace.surface = workspace_surface(mechanism, options.surface_divisions);
-  if (workspace.sweep.inside == 0) {
+  const LatticeSweep& sweep = in_plane ? sheet.plane->sweep : sheet.workspace->sweep;
+  sheet.complete = sweep.complete;
+  sheet.conditioning = sweep_conditioning(mechanism, in_plane ? spacing : 2.0 * spacing,
+                                          {.threads = options.effort.threads, .cancel = options.effort.cancel});
+  sheet.complete = sheet.complete && sheet.conditioning->complete;
+  if (sweep.inside == 0) {
     sheet.warnings.push_back("No point of the workspace lattice can be reached: is the spacing too wide?");
   }
-  if (workspace.volume.method == WorkspaceVolume::Method::lattice) {
+  if (sheet.workspace && sheet.workspace->volume.method == WorkspaceVolume::Method::lattice) {
     sheet.warnings.push_back(
         "The joint ranges hold postures that the loops cannot take or where a singularity is passed: the "
         "volume is "
@@ -385,12 +427,12 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
   }
 
   if (driven) {
-    sheet.continuous = force_sheet(workspace.sweep, drives, false);
+    sheet.continuous = force_sheet(sweep, drives, false);
     // Forces are proportional to the torques, so equal ratios of peak to continuous torque need no second
     // sweep.
     const ActiveVector ratio = torques(drives, true).cwiseQuotient(torques(drives, false));
     if (ratio.maxCoeff() - ratio.minCoeff() <= 1e-12 * ratio.maxCoeff()) {
-      sheet.peak = force_sheet(workspace.sweep, drives, true);
+      sheet.peak = force_sheet(sweep, drives, true);
       for (Statistic& axis : sheet.peak->axes) scale(axis, ratio[0]);
       scale(sheet.peak->weakest, ratio[0]);
       scale(sheet.peak->strongest, ratio[0]);
@@ -399,14 +441,13 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
       sheet.peak = force_sheet(sweep_workspace(mechanism, peak, options.effort), drives, true);
     }
     const int first = static_cast<int>(Figure::step_x);
-    for (int axis = 0; axis < 3; ++axis) sheet.resolution[axis] = workspace.sweep.figures[first + axis];
+    for (int axis = 0; axis < 3; ++axis) sheet.resolution[axis] = sweep.figures[first + axis];
   }
   if (has_mass(mechanism)) {
     sheet.inertia = sweep_inertia(mechanism, inertia_spacing,
                                   {.threads = options.effort.threads, .cancel = options.effort.cancel});
     sheet.complete = sheet.complete && sheet.inertia->complete;
   }
-  sheet.workspace = std::move(workspace);
   sheet.middle = middle_posture(mechanism, sheet, drives, driven);
   if (!sheet.middle) sheet.warnings.push_back("The loops do not close in the middle of the joint ranges.");
   return sheet;

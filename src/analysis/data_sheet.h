@@ -8,6 +8,8 @@
 #include "zwidth/actuation/drive.h"
 #include "zwidth/actuation/pneumatic_drive.h"
 #include "zwidth/analysis/arm_sheet.h"
+#include "zwidth/analysis/conditioning.h"
+#include "zwidth/analysis/five_bar_curves.h"
 #include "zwidth/analysis/force.h"
 #include "zwidth/analysis/inertia.h"
 #include "zwidth/analysis/resolution.h"
@@ -51,15 +53,16 @@ struct ForceSheet {
 struct PostureSheet {
   ActiveVector active;                 ///< [rad]
   Vector3 position = Vector3::Zero();  ///< [m]
-  Matrix3 jacobian = Matrix3::Zero();  ///< [m/rad]
+  Jacobian jacobian;                   ///< linear rows [m/rad]
   double condition_number = 0.0;
-  double manipulability = 0.0;  ///< [m^3/rad^3]
+  double manipulability = 0.0;  ///< [m^3/rad^3], in a plane [m^2/rad^2]
   std::optional<ForcePolytope> continuous_forces;
   std::optional<ForcePolytope> peak_forces;
   ActiveVector gravity_torques;               ///< [N m]; zero without bodies
   std::optional<ApparentMass> apparent_mass;  ///< empty if nothing has mass
-  std::optional<Vector3> tool_resolution;     ///< worst-case step per axis [m]
-  std::optional<Vector3> force_resolution;    ///< worst-case step per axis [N]; empty if a drive's is not given
+  std::optional<ToolVector> tool_resolution;  ///< worst-case step per axis [m]
+  std::optional<ToolVector>
+      force_resolution;  ///< worst-case step per axis [N]; empty if a drive's is not given
 };
 
 /// Sampled responses of the two-mass actuator model, tip force to motor current.
@@ -116,6 +119,18 @@ struct WorkspaceSheet {
   SurfaceMesh surface;
 };
 
+/// What a tool that moves in a plane can reach and do.
+struct PlaneSheet {
+  LatticeSweep sweep;  ///< with the continuous torque limits, all figures
+  Extents extents;
+  WorkspaceVolume area;
+  InscribedShapes inscribed;             ///< circle and square
+  SliceMap map;                          ///< of the whole plane
+  std::vector<Slice> condition_regions;  ///< where the condition number is below 5, 10 and 100
+  DexterousRegion dexterous;
+  std::vector<FiveBarCurve> singular_curves;  ///< of a five-bar, in its own working mode and joint ranges
+};
+
 struct DataSheet {
   // Identity
   std::string name;
@@ -123,15 +138,17 @@ struct DataSheet {
   std::string source;
   std::string mechanism_type;  ///< "delta", "legs"
   int active_joints = 0;
-  int tool_freedoms = 0;                 ///< 3 or 6
+  int tool_freedoms = 0;                 ///< 2, 3 or 6
   std::vector<std::string> joint_names;  ///< of the active joints
   std::vector<Interval> joint_ranges;    ///< [rad]
   std::vector<GeometryEntry> geometry;
   double moving_mass = 0.0;  ///< of all bodies [kg]
 
   std::optional<WorkspaceSheet> workspace;  ///< empty for mechanisms that `workspace_obstacle` refuses
+  std::optional<PlaneSheet> plane;          ///< instead, if the tool moves in a plane
   std::optional<ArmSheet> arm;              ///< of a tool that also turns; empty for all others
-  std::optional<ForceSheet> continuous;     ///< empty without drives on every joint, or without workspace
+  std::optional<WorkspaceConditioning> conditioning;  ///< with either
+  std::optional<ForceSheet> continuous;  ///< empty without drives on every joint, or without workspace
   std::optional<ForceSheet> peak;
   std::optional<InertiaSweep> inertia;  ///< empty if nothing has mass
   std::optional<PostureSheet> middle;   ///< empty if the middle of the joint ranges does not close

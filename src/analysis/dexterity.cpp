@@ -119,6 +119,7 @@ void GlobalConditioning::add(double condition_number, double weight) {
   if (weight == 0.0) return;
   // Updated as it goes (West 1979), so that a small spread survives many samples.
   weight_ += weight;
+  class_weight_[static_cast<std::size_t>(condition_class(condition_number))] += weight;
   const double gap = value - mean_;
   mean_ += gap * weight / weight_;
   squares_ += weight * gap * (value - mean_);
@@ -132,6 +133,7 @@ void GlobalConditioning::add(const GlobalConditioning& other) {
   squares_ += other.squares_ + gap * gap * weight_ * other.weight_ / total;
   mean_ += gap * other.weight_ / total;
   weight_ = total;
+  for (std::size_t k = 0; k < class_weight_.size(); ++k) class_weight_[k] += other.class_weight_[k];
 }
 
 double GlobalConditioning::index() const {
@@ -140,6 +142,10 @@ double GlobalConditioning::index() const {
 
 double GlobalConditioning::spread() const {
   return weight_ > 0.0 ? std::sqrt(std::max(0.0, squares_ / weight_)) : 0.0;
+}
+
+double GlobalConditioning::share(ConditionClass condition_class) const {
+  return weight_ > 0.0 ? class_weight_[static_cast<std::size_t>(condition_class)] / weight_ : 0.0;
 }
 
 double task_volume(const Jacobian& jacobian) {

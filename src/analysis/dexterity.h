@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "zwidth/mechanism/jacobian.h"
@@ -43,6 +44,15 @@ CharacteristicLength characteristic_length(std::span<const Jacobian> jacobians, 
 /// (Kim & Khosla 1991). The rows must be of one kind, or the Jacobian homogeneous.
 double isotropy(const Jacobian& jacobian);
 
+/// Classes of the condition number (Singh, Saha & Manivannan, section 4.1): K < 5, 5 <= K <= 10, 10 < K <= 100
+/// and beyond.
+enum class ConditionClass { below_5, from_5_to_10, from_10_to_100, above_100 };
+inline constexpr std::array kConditionClasses = {ConditionClass::below_5, ConditionClass::from_5_to_10,
+                                                 ConditionClass::from_10_to_100, ConditionClass::above_100};
+ConditionClass condition_class(double condition_number);
+/// "K < 5", "5 to 10", "10 to 100", "K > 100".
+const char* to_string(ConditionClass condition_class);
+
 /// Mean of 1/(condition number) over a workspace: the global conditioning index (Gosselin & Angeles 1991). The
 /// condition number itself has no mean: it grows without bound towards a singularity.
 class GlobalConditioning {
@@ -58,6 +68,8 @@ class GlobalConditioning {
   double worst() const { return worst_; }    ///< smallest 1/(condition number) seen; 1 without samples
   double best() const { return best_; }      ///< largest
   double spread() const;                     ///< standard deviation of 1/(condition number)
+  /// Of the whole weight, the part with condition numbers of a class; 0 without samples.
+  double share(ConditionClass condition_class) const;
 
  private:
   double weight_ = 0.0;
@@ -65,18 +77,12 @@ class GlobalConditioning {
   double squares_ = 0.0;  // weighted, of differences from the mean
   double worst_ = 1.0;
   double best_ = 0.0;
+  std::array<double, kConditionClasses.size()> class_weight_{};
 };
 
 /// Task-space volume per volume of the joint space, sqrt(det(J J^T)): the weight of a sample drawn evenly over
 /// the joint ranges. Of a redundant arm several postures share a tool position, so that the index is then one
 /// over postures, not positions.
 double task_volume(const Jacobian& jacobian);
-
-/// Classes of the condition number (Singh, Saha & Manivannan, section 4.1): K < 5, 5 <= K <= 10, 10 < K <= 100
-/// and beyond.
-enum class ConditionClass { below_5, from_5_to_10, from_10_to_100, above_100 };
-ConditionClass condition_class(double condition_number);
-/// "K < 5", "5 to 10", "10 to 100", "K > 100".
-const char* to_string(ConditionClass condition_class);
 
 }  // namespace zwidth

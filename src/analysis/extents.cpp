@@ -28,7 +28,7 @@ Probe::Answer climb(Probe& probe, const Probe::Answer& start, int axis, double s
     const Vector3 gradient = sign * best.jacobian.row(axis).transpose();
     std::array<int, 3> free;
     int count = 0;
-    for (int j = 0; j < 3; ++j) {
+    for (int j = 0; j < probe.dimension(); ++j) {
       const Interval range = probe.range(j);
       const bool held = (best.joints[j] <= range.min && gradient[j] < 0.0) ||
                         (best.joints[j] >= range.max && gradient[j] > 0.0);
@@ -111,9 +111,13 @@ Quadrature gauss_legendre(int order) {
 double integral(const Mechanism& mechanism, int order, const Effort& effort) {
   const Quadrature rule = gauss_legendre(order);
   const auto n = static_cast<std::size_t>(order);
+  const int dimension = internal::tool_dimension(mechanism);
+  const std::size_t deep = dimension == 2 ? 1 : n;  // points along the third joint
   std::array<std::vector<double>, 3> angle;
+  angle[2] = {0.0};
   double scale = 1.0;
-  for (int j = 0; j < 3; ++j) {
+  for (int j = 0; j < dimension; ++j) {
+    if (j == 2) angle[2].clear();
     const Interval range = mechanism.active_range(j);
     for (const double node : rule.node) angle[j].push_back(range.middle() + 0.5 * range.width() * node);
     scale *= 0.5 * range.width();
@@ -144,9 +148,9 @@ double integral(const Mechanism& mechanism, int order, const Effort& effort) {
     } else {
       Probe probe(mechanism);
       for (std::size_t b = 0; b < n; ++b) {
-        for (std::size_t c = 0; c < n; ++c) {
+        for (std::size_t c = 0; c < deep; ++c) {
           const Probe::Answer answer = probe.forward({angle[0][a], angle[1][b], angle[2][c]});
-          take(rule.weight[b] * rule.weight[c],
+          take(rule.weight[b] * (dimension == 2 ? 1.0 : rule.weight[c]),
                answer.reached ? answer.jacobian.determinant() : std::numeric_limits<double>::quiet_NaN());
         }
       }
@@ -163,16 +167,11 @@ double integral(const Mechanism& mechanism, int order, const Effort& effort) {
 
 // Whether the joint ranges, ends included, map one to one onto the workspace, as far as a grid of points shows.
 bool maps_one_to_one(const Mechanism& mechanism) {
-  constexpr int kPoints = 9;
   Probe probe(mechanism);
-  for (int index = 0; index < kPoints * kPoints * kPoints; ++index) {
-    Vector3 joints;
-    for (int j = 0, rest = index; j < 3; ++j, rest /= kPoints) {
-      const Interval range = probe.range(j);
-      joints[j] = range.min + range.width() * (rest % kPoints) / (kPoints - 1);
-    }
-    const Probe::Answer answer = probe.forward(joints);
-    if (!answer.inside) return false;
+  const int points = probe.dimension() == 2 ? 25 : 9;
+  const int count = points * points * (probe.dimension() == 2 ? 1 : points);
+  for (int index = 0; index < count; ++index) {
+    if (!probe.forward(probe.grid_joints(index, points)).inside) return false;
   }
   return true;
 }
@@ -182,22 +181,18 @@ bool maps_one_to_one(const Mechanism& mechanism) {
 Extents workspace_extents(const Mechanism& mechanism) {
   assert(!workspace_obstacle(mechanism));
   // A coarse grid of joint values, ends included, finds the hills; the best few are climbed.
-  const int kPoints = mechanism.delta() ? 13 : 7;
   constexpr int kStarts = 4;
   Probe probe(mechanism);
+  const int points = probe.dimension() == 2 ? 49 : probe.fast() ? 13 : 7;
+  const int count = points * points * (probe.dimension() == 2 ? 1 : points);
   std::vector<Probe::Answer> grid;
-  for (int index = 0; index < kPoints * kPoints * kPoints; ++index) {
-    Vector3 joints;
-    for (int j = 0, rest = index; j < 3; ++j, rest /= kPoints) {
-      const Interval range = probe.range(j);
-      joints[j] = range.min + range.width() * (rest % kPoints) / (kPoints - 1);
-    }
-    const Probe::Answer answer = probe.forward(joints);
+  for (int index = 0; index < count; ++index) {
+    const Probe::Answer answer = probe.forward(probe.grid_joints(index, points));
     if (answer.inside) grid.push_back(answer);
   }
   Extents extents;
   if (grid.empty()) return extents;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < probe.dimension(); ++axis) {
     for (int end = 0; end < 2; ++end) {
       const double sign = end == 0 ? -1.0 : 1.0;
       const auto starts = std::min<std::ptrdiff_t>(kStarts, std::ssize(grid));
@@ -219,7 +214,15 @@ Extents workspace_extents(const Mechanism& mechanism) {
 }
 
 const char* to_string(WorkspaceVolume::Method method) {
-  return method == WorkspaceVolume::Method::integral ? "integral" : "lattice";
+  switch (method) {
+    case WorkspaceVolume::Method::integral:
+      return "integral";
+    case WorkspaceVolume::Method::lattice:
+      return "lattice";
+    case WorkspaceVolume::Method::outline:
+      break;
+  }
+  return "outline";
 }
 
 WorkspaceVolume workspace_volume(const Mechanism& mechanism, const Effort& effort) {
@@ -227,6 +230,7 @@ WorkspaceVolume workspace_volume(const Mechanism& mechanism, const Effort& effor
   constexpr double kTolerance = 1e-11;  // relative, between one order and the next
   constexpr double kUseless = 1e-4;     // the integrand is not smooth: counting does as well
   WorkspaceVolume volume;
+  const bool fast = Probe(mechanism).fast();
   if (maps_one_to_one(mechanism)) {
     double before = std::numeric_limits<double>::quiet_NaN();
     for (const int order : {8, 12, 16, 24, 32, 40, 48, 64}) {
@@ -234,13 +238,25 @@ WorkspaceVolume workspace_volume(const Mechanism& mechanism, const Effort& effor
       const double change = std::abs(value - before);
       volume = {.value = value, .error_estimate = change, .order = order};
       if (std::isnan(value) || change <= kTolerance * value) break;
-      if (!mechanism.delta() && change <= 1e-9 * value) break;  // each value costs a solution of the loops
+      if (!fast && change <= 1e-9 * value) break;  // each value costs a solution of the loops
       before = value;
     }
     if (volume.error_estimate <= kUseless * volume.value) return volume;
   }
-  const Vector3 size = workspace_extents(mechanism).size();
-  const double h = size.maxCoeff() / (mechanism.delta() ? 250.0 : 40.0);
+  const Extents extents = workspace_extents(mechanism);
+  const double size = extents.size().maxCoeff();
+  if (internal::tool_dimension(mechanism) == 2) {
+    volume = {.method = WorkspaceVolume::Method::outline};
+    if (!(size > 0.0)) return volume;
+    // The error of a polygon with its corners on the boundary falls with the square of their distance.
+    constexpr int kPoints = 401;
+    volume.spacing = size / (kPoints - 1);
+    volume.value = map_slice(mechanism, extents, 2, 0.0, kPoints, {}).slice.area;
+    const double coarse = map_slice(mechanism, extents, 2, 0.0, (kPoints + 1) / 2, {}).slice.area;
+    volume.error_estimate = std::abs(volume.value - coarse);
+    return volume;
+  }
+  const double h = size / (fast ? 250.0 : 40.0);
   volume = {.method = WorkspaceVolume::Method::lattice};
   if (!(h > 0.0)) return volume;
   const auto count = [&](double spacing) {

@@ -42,6 +42,7 @@ InertiaSweep sweep_inertia(const Mechanism& mechanism, double spacing, const Eff
     std::array<internal::StatisticBuilder, 3> along_axes;
     internal::StatisticBuilder lightest, heaviest, gravity_torque;
   };
+  const int axes = internal::tool_dimension(mechanism);
   const auto box = internal::lattice_box(mechanism, spacing);
   std::vector<Plane> planes(static_cast<std::size_t>(internal::size(box[0])));
   InertiaSweep sweep;
@@ -51,7 +52,7 @@ InertiaSweep sweep_inertia(const Mechanism& mechanism, double spacing, const Eff
     internal::Probe probe(mechanism);
     const double x = static_cast<double>(box[0].first + static_cast<std::int64_t>(index)) * spacing;
     for (std::int64_t j = box[1].first; j <= box[1].last; ++j) {
-      probe.restart();
+      if (axes == 3) probe.restart();
       for (std::int64_t k = box[2].first; k <= box[2].last; ++k) {
         const Vector3 point(x, static_cast<double>(j) * spacing, static_cast<double>(k) * spacing);
         if (!probe.inverse(point).inside) continue;
@@ -59,9 +60,9 @@ InertiaSweep sweep_inertia(const Mechanism& mechanism, double spacing, const Eff
         if (!posture) continue;
         const Rates rate = rates(*posture);
         const ActiveMatrix M = mass_matrix(*posture, rate);
-        const ApparentMass mass = apparent_mass(cartesian_mass(rate.tool.topRows(3), M));
+        const ApparentMass mass = apparent_mass(cartesian_mass(rate.tool.topRows(axes), M));
         ++plane.inside;
-        for (int axis = 0; axis < 3; ++axis) plane.along_axes[axis].add(mass.along_axes[axis], point);
+        for (int axis = 0; axis < axes; ++axis) plane.along_axes[axis].add(mass.along_axes[axis], point);
         plane.lightest.add(mass.lightest, point);
         plane.heaviest.add(mass.heaviest, point);
         plane.gravity_torque.add(gravity_torques(*posture, rate).cwiseAbs().maxCoeff(), point);

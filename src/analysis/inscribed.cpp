@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "zwidth/analysis/internal/probe.h"
 #include "zwidth/analysis/workspace.h"
 
-/// The largest c + a U in the workspace, U the unit ball of the 2-norm (sphere) or of the maximum norm (cube).
+/// The largest c + a U in the workspace, U the unit ball of the 2-norm (sphere, circle) or of the maximum norm
+/// (cube, square).
 /// For a centre c, a is the shortest way out along any ray of U's surface: a(c) = min_u t(c, u). That is
 /// maximised over c by sequential linear programming on the nearest contacts, with a trust region; only the
 /// question "inside?" is asked.
@@ -23,6 +25,7 @@ constexpr double kSafety = 1e-8;  // relative; keeps the answer inside in spite 
 
 struct Shape {
   bool cube = false;
+  int dimension = 3;             // 2: all in the plane of x and y
   std::vector<Vector3> samples;  // of its surface
 
   Vector3 onto_surface(const Vector3& u) const { return u / (cube ? u.lpNorm<Eigen::Infinity>() : u.norm()); }
@@ -54,6 +57,28 @@ Shape unit_cube() {
   return shape;
 }
 
+Shape unit_circle() {
+  constexpr int kPoints = 96;
+  Shape shape{.dimension = 2};
+  for (int n = 0; n < kPoints; ++n) {
+    const double angle = 2.0 * std::numbers::pi * n / kPoints;
+    shape.samples.emplace_back(std::cos(angle), std::sin(angle), 0.0);
+  }
+  return shape;
+}
+
+Shape unit_square() {
+  constexpr int kHalf = 12;
+  Shape shape{.cube = true, .dimension = 2};
+  for (int i = -kHalf; i < kHalf; ++i) {
+    const double a = static_cast<double>(i) / kHalf;
+    for (const Vector3& u : {Vector3(a, -1, 0), Vector3(1, a, 0), Vector3(-a, 1, 0), Vector3(-1, -a, 0)}) {
+      shape.samples.push_back(u);
+    }
+  }
+  return shape;
+}
+
 // A ray that leaves the workspace earlier than those around it.
 struct Contact {
   Vector3 u;                        // on the surface of the unit shape
@@ -63,23 +88,29 @@ struct Contact {
 
 class Inflation {
  public:
-  Inflation(Probe& probe, const Shape& shape, double scale) : probe_(probe), shape_(shape), scale_(scale) {}
+  // `hole` is the size of the smallest hole that is looked for [m]; infinite: there is none.
+  Inflation(Probe& probe, const Shape& shape, double scale, double hole)
+      : probe_(probe), shape_(shape), scale_(scale), hole_(hole) {}
 
   // Contacts of centre c up to `margin` beyond the nearest, nearest first; those of a neighbouring centre help.
-  std::vector<Contact> contacts(const Vector3& c, const std::vector<Contact>& known, double margin) {
+  // The shape of size `safe` fits, and none is expected to beyond `reach`.
+  std::vector<Contact> contacts(const Vector3& c, const std::vector<Contact>& known, double margin, double safe,
+                                double reach) {
     std::vector<Contact> found;
     if (!inside(c)) return found;
-    double nearest = scale_;
+    safe_ = std::max(0.0, safe);
+    double nearest = reach;
     for (const Contact& contact : known) {
-      found.push_back(descend(c, {contact.u, exit(c, contact.u, nearest + margin)}, 0.03));
+      const double limit = nearest + margin;
+      found.push_back(descend(c, {contact.u, exit(c, contact.u, limit).value_or(limit)}, 0.03));
       nearest = std::min(nearest, found.back().t);
     }
     std::vector<Contact> rays;
     for (const Vector3& u : shape_.samples) {
-      const double limit = nearest + margin;
-      if (inside(c + limit * u)) continue;
-      rays.push_back({u, exit(c, u, limit)});
-      nearest = std::min(nearest, rays.back().t);
+      const std::optional<double> t = exit(c, u, nearest + margin);
+      if (!t) continue;
+      rays.push_back({u, *t});
+      nearest = std::min(nearest, *t);
     }
     std::ranges::sort(rays, {}, &Contact::t);
     for (const Contact& ray : rays) {
@@ -113,7 +144,7 @@ class Inflation {
     const Probe::Answer answer = probe_.inverse(p);
     if (!answer.reached || !answer.on_branch) return std::numeric_limits<double>::quiet_NaN();
     double least = std::numeric_limits<double>::infinity();
-    for (int j = 0; j < 3; ++j) {
+    for (int j = 0; j < probe_.dimension(); ++j) {
       const Interval range = probe_.range(j);
       least = std::min({least, answer.joints[j] - range.min, range.max - answer.joints[j]});
     }
@@ -129,7 +160,7 @@ class Inflation {
       const bool measured = margin_in > 0.0 && margin_out < 0.0 && step % 8 != 7;
       const double t = measured ? in + (out - in) * margin_in / (margin_in - margin_out) : 0.5 * (in + out);
       const double here = margin(c + t * u);
-      if (std::abs(here) < 1e-14) return t;
+      if (measured && std::abs(here) < 1e-14) return t;
       if (here > 0.0) {
         in = t;
         margin_in = here;
@@ -145,20 +176,27 @@ class Inflation {
     return in;
   }
 
-  // Where the ray leaves, if it is outside at `limit`; else `limit`.
-  double exit(const Vector3& c, const Vector3& u, double limit) {
-    return inside(c + limit * u) ? limit : exit_between(c, u, 0.0, limit);
+  // Where the ray leaves before `limit`, if it does: in steps, since it may enter again beyond a hole.
+  std::optional<double> exit(const Vector3& c, const Vector3& u, double limit) {
+    double in = std::min(safe_, limit);
+    while (in < limit) {
+      const double next = std::min(in + hole_, limit);
+      if (!inside(c + next * u)) return exit_between(c, u, in, next);
+      in = next;
+    }
+    return std::nullopt;
   }
 
   // Pattern search for the ray near by that leaves first.
   Contact descend(const Vector3& c, Contact best, double step) {
     while (step > 2e-6) {
       bool gained = false;
-      for (int direction = 0; direction < 6 && !gained; ++direction) {
+      const int axes = shape_.dimension;
+      for (int direction = 0; direction < 2 * axes && !gained; ++direction) {
         const Vector3 u =
-            shape_.onto_surface(best.u + (direction < 3 ? step : -step) * Vector3::Unit(direction % 3));
+            shape_.onto_surface(best.u + (direction < axes ? step : -step) * Vector3::Unit(direction % axes));
         if (inside(c + best.t * u)) continue;
-        const double t = exit_between(c, u, 0.0, best.t);
+        const double t = exit_between(c, u, std::min(safe_, best.t), best.t);
         if (t < best.t) {
           best = {u, t};
           gained = true;
@@ -171,6 +209,7 @@ class Inflation {
 
   // Outward normal of the boundary where a contact leaves.
   Vector3 normal(const Vector3& c, const Contact& contact) {
+    if (shape_.dimension == 2) return plane_normal(c, contact);
     const Probe::Answer answer = probe_.inverse(c + contact.t * contact.u);
     Vector3 n = shape_.cube ? shape_.onto_surface(contact.u).normalized() : contact.u;
     if (!answer.reached || answer.jacobian.determinant() == 0.0) return n;
@@ -190,15 +229,36 @@ class Inflation {
     return n;
   }
 
+  // The same in a plane, where the boundary need not be the end of a joint's range. Where a ray leaves first
+  // among those around it, boundary and shape touch; only a corner of the square tells nothing of the boundary.
+  Vector3 plane_normal(const Vector3& c, const Contact& contact) {
+    const Vector3& u = contact.u;
+    if (!shape_.cube) return u;
+    const int along = std::abs(u.x()) < std::abs(u.y()) ? 0 : 1;  // the axis that runs along the edge
+    if (std::abs(u[along]) < 1.0 - 1e-4) return std::copysign(1.0, u[1 - along]) * Vector3::Unit(1 - along);
+    constexpr double kTurn = 1e-4;
+    std::array<Vector3, 2> beside;
+    for (int side = 0; side < 2; ++side) {
+      const double turn = side == 0 ? -kTurn : kTurn;
+      const Vector3 v = u + turn * Vector3(-u.y(), u.x(), 0.0);
+      const double limit = contact.t * (1.0 + 50.0 * kTurn);
+      beside[side] = c + exit(c, v, limit).value_or(limit) * v;
+    }
+    const Vector3 tangent = beside[1] - beside[0];
+    return Vector3(tangent.y(), -tangent.x(), 0.0).normalized();
+  }
+
   Probe& probe_;
   const Shape& shape_;
   double scale_;
+  double hole_;
+  double safe_ = 0.0;
 };
 
 // The move within |move|_inf <= radius that makes the smallest of t_m + slope_m . move largest: the best of all
 // vertices of the linear program, of which there are few. A vertex lies where contact i is met together with
 // three more: contacts, or sides of the trust region.
-Vector3 best_move(const std::vector<Contact>& contacts, double radius) {
+Vector3 best_move(const std::vector<Contact>& contacts, double radius, int dimension) {
   const auto value_at = [&](const Vector3& move) {
     double value = 1e300;
     for (const Contact& contact : contacts) value = std::min(value, contact.t + contact.slope.dot(move));
@@ -217,6 +277,12 @@ Vector3 best_move(const std::vector<Contact>& contacts, double radius) {
     }
     for (int axis = 0; axis < 3; ++axis) {
       for (const double side : {-radius, radius}) {
+        // In a plane nothing moves along z, and one row says so.
+        if (axis == 2 && dimension == 2 && side > 0.0) {
+          rows.push_back(Vector3::Unit(2));
+          bounds.push_back(0.0);
+        }
+        if (axis == 2 && dimension == 2) continue;
         rows.push_back(Vector3::Unit(axis));
         bounds.push_back(side);
       }
@@ -243,19 +309,38 @@ Vector3 best_move(const std::vector<Contact>& contacts, double radius) {
   return best;
 }
 
-InscribedShape inflate(Probe& probe, const Shape& shape, const Vector3& start, double trust, double scale) {
-  Inflation inflation(probe, shape, scale);
-  Vector3 c = start;
-  std::vector<Contact> contacts = inflation.contacts(c, {}, 2.0 * trust);
+// Promising centres: points of a coarse lattice, far from the lattice points outside.
+struct Start {
+  Vector3 centre = Vector3::Zero();
+  std::array<Vector3, 2> outside{Vector3::Zero(), Vector3::Zero()};  // the nearest of those
+  std::array<double, 2> distance{1e300, 1e300};  // by the 2-norm and by the maximum norm [m]
+};
+
+InscribedShape inflate(Probe& probe, const Shape& shape, const Start& start, double spacing, double scale) {
+  // In a plane, whose workspace often has holes, rays go step by step from where the shape is known to fit.
+  const bool in_plane = shape.dimension == 2;
+  Inflation inflation(probe, shape, scale, in_plane ? spacing : std::numeric_limits<double>::infinity());
+  Vector3 c = start.centre;
+  double trust = spacing;
+  std::vector<Contact> known;
+  if (in_plane) known.push_back({.u = shape.onto_surface(start.outside[shape.cube] - c)});
+  const double distance = start.distance[shape.cube];
+  std::vector<Contact> contacts = inflation.contacts(
+      c, known, 2.0 * trust, in_plane ? distance - 2.0 * spacing : 0.0, in_plane ? distance : scale);
   if (contacts.empty()) return {};
+  // What fits still fits around a centre near by, smaller by the move; a tenth is looked at again.
+  const auto still_fits = [&](const Vector3& move) {
+    const double length = shape.cube ? move.lpNorm<Eigen::Infinity>() : move.norm();
+    return in_plane ? 0.9 * contacts.front().t - length : 0.0;
+  };
   for (int iteration = 0; iteration < 60 && trust > 1e-10 * scale; ++iteration) {
-    const Vector3 move = best_move(contacts, trust);
+    const Vector3 move = best_move(contacts, trust, shape.dimension);
     if (move.isZero(0.0)) {
       trust *= 0.3;
-      contacts = inflation.contacts(c, contacts, 2.0 * trust);
+      contacts = inflation.contacts(c, contacts, 2.0 * trust, still_fits(move), scale);
       continue;
     }
-    std::vector<Contact> there = inflation.contacts(c + move, contacts, 2.0 * trust);
+    std::vector<Contact> there = inflation.contacts(c + move, contacts, 2.0 * trust, still_fits(move), scale);
     double expected = 1e300;
     for (const Contact& contact : contacts) expected = std::min(expected, contact.t + contact.slope.dot(move));
     const double gain = there.empty() ? -1.0 : there.front().t - contacts.front().t;
@@ -272,23 +357,23 @@ InscribedShape inflate(Probe& probe, const Shape& shape, const Vector3& start, d
   result.centre = c;
   const double a = contacts.front().t * (1.0 - kSafety);
   result.size = shape.cube ? 2.0 * a : a;
-  result.volume = shape.cube ? 8.0 * a * a * a : 4.0 / 3.0 * std::numbers::pi * a * a * a;
+  if (in_plane) {
+    result.volume = (shape.cube ? 4.0 : std::numbers::pi) * a * a;
+  } else {
+    result.volume = (shape.cube ? 8.0 : 4.0 / 3.0 * std::numbers::pi) * a * a * a;
+  }
   return result;
 }
 
-// Promising centres: points of a coarse lattice, far from the lattice points outside.
-struct Start {
-  Vector3 centre;
-  double distance[2];  // by the 2-norm and by the maximum norm [m]
-};
-
 std::vector<Start> starts(Probe& probe, const Extents& extents, double h) {
   std::array<int, 3> n;
+  const bool in_plane = probe.dimension() == 2;
   for (int axis = 0; axis < 3; ++axis) n[axis] = static_cast<int>(extents.range[axis].width() / h) + 3;
+  if (in_plane) n[2] = 1;
   const auto index = [&](int i, int j, int k) { return (i * n[1] + j) * n[2] + k; };
   const auto point = [&](int i, int j, int k) {
     return Vector3(extents.range[0].min + (i - 0.5) * h, extents.range[1].min + (j - 0.5) * h,
-                   extents.range[2].min + (k - 0.5) * h);
+                   in_plane ? 0.0 : extents.range[2].min + (k - 0.5) * h);
   };
   std::vector<char> inside(static_cast<std::size_t>(n[0] * n[1] * n[2]));
   for (int i = 0; i < n[0]; ++i) {
@@ -308,7 +393,7 @@ std::vector<Start> starts(Probe& probe, const Extents& extents, double h) {
     for (int j = 0; j < n[1]; ++j) {
       for (int k = 0; k < n[2]; ++k) {
         if (is_inside(i, j, k)) {
-          centres.push_back({point(i, j, k), {1e300, 1e300}});
+          centres.push_back({.centre = point(i, j, k)});
         } else if (is_inside(i - 1, j, k) || is_inside(i + 1, j, k) || is_inside(i, j - 1, k) ||
                    is_inside(i, j + 1, k) || is_inside(i, j, k - 1) || is_inside(i, j, k + 1)) {
           rim.push_back(point(i, j, k));
@@ -320,8 +405,14 @@ std::vector<Start> starts(Probe& probe, const Extents& extents, double h) {
     double squared = 1e300, largest = 1e300;
     for (const Vector3& outside : rim) {
       const Vector3 d = outside - start.centre;
-      squared = std::min(squared, d.squaredNorm());
-      largest = std::min(largest, d.lpNorm<Eigen::Infinity>());
+      if (const double length = d.squaredNorm(); length < squared) {
+        squared = length;
+        start.outside[0] = outside;
+      }
+      if (const double length = d.lpNorm<Eigen::Infinity>(); length < largest) {
+        largest = length;
+        start.outside[1] = outside;
+      }
     }
     start.distance[0] = std::sqrt(squared);
     start.distance[1] = largest;
@@ -338,26 +429,29 @@ InscribedShapes inscribed_shapes(const Mechanism& mechanism) {
   const double scale = extents.size().maxCoeff();
   InscribedShapes shapes;
   if (!(scale > 0.0)) return shapes;
+  const bool in_plane = probe.dimension() == 2;
   // An arm that positions often covers a shell, thin beside its width: as many points as a cube would have then
   // lie closer in its flat box.
   const bool arm = mechanism.platform() == PlatformFreedom::point;
-  const bool quick = mechanism.delta() || arm;
+  const bool quick = probe.fast() || arm;
   const double edge = arm ? std::cbrt(extents.size().prod()) : scale;
-  const double h = edge / (quick ? 24.0 : 12.0);
-  const int tries = quick ? 3 : 1;
+  const double h = edge / (in_plane ? 80.0 : quick ? 24.0 : 12.0);
+  const int tries = in_plane ? 5 : quick ? 3 : 1;
   std::vector<Start> centres = starts(probe, extents, h);
   for (const bool cube : {false, true}) {
-    const Shape shape = cube ? unit_cube() : unit_sphere();
+    const Shape shape = in_plane ? (cube ? unit_square() : unit_circle()) : cube ? unit_cube() : unit_sphere();
     std::ranges::sort(centres, std::ranges::greater(),
                       [cube](const Start& start) { return start.distance[cube]; });
     InscribedShape best;
     std::vector<Vector3> tried;
     for (const Start& start : centres) {
       if (std::ssize(tried) == tries) break;
-      if (std::ranges::any_of(tried, [&](const Vector3& c) { return (c - start.centre).norm() < 3.0 * h; }))
+      // Others lead to the same place.
+      const double apart = std::max(3.0 * h, 0.5 * start.distance[cube]);
+      if (std::ranges::any_of(tried, [&](const Vector3& c) { return (c - start.centre).norm() < apart; }))
         continue;
       tried.push_back(start.centre);
-      const InscribedShape found = inflate(probe, shape, start.centre, h, scale);
+      const InscribedShape found = inflate(probe, shape, start, h, scale);
       if (found.size > best.size) best = found;
     }
     (cube ? shapes.cube : shapes.sphere) = best;

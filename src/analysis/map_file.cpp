@@ -29,7 +29,8 @@ void write_double(double value, std::ostream& out) {
 
 std::vector<std::string> WorkspaceMap::columns() const {
   std::vector<std::string> names = {"x", "y", "z"};
-  for (int f = 0; f < defined_figures; ++f) names.emplace_back(figure_info(f).name);
+  names.resize(static_cast<std::size_t>(dimension));
+  for (const Figure which : defined) names.emplace_back(figure_info(static_cast<int>(which)).name);
   return names;
 }
 
@@ -38,13 +39,13 @@ void write_csv(const WorkspaceMap& map, std::ostream& out) {
   for (std::size_t c = 0; c < names.size(); ++c) out << (c == 0 ? "" : ",") << names[c];
   out << '\n';
   for (std::size_t p = 0; p < map.positions.size(); ++p) {
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < map.dimension; ++axis) {
       if (axis > 0) out << ',';
       write_number(map.positions[p][axis], out);
     }
-    for (int f = 0; f < map.defined_figures; ++f) {
+    for (const Figure which : map.defined) {
       out << ',';
-      write_number(map.figures[p][f], out);
+      write_number(figure(map.figures[p], which), out);
     }
     out << '\n';
   }
@@ -52,7 +53,7 @@ void write_csv(const WorkspaceMap& map, std::ostream& out) {
 
 void write_npy(const WorkspaceMap& map, std::ostream& out) {
   std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (" +
-                       std::to_string(map.positions.size()) + ", " + std::to_string(3 + map.defined_figures) +
+                       std::to_string(map.positions.size()) + ", " + std::to_string(map.columns().size()) +
                        "), }";
   // Magic (6), version (2) and length (2) with the header fill a multiple of 64 bytes, the last a newline.
   while ((10 + header.size() + 1) % 64 != 0) header += ' ';
@@ -61,8 +62,8 @@ void write_npy(const WorkspaceMap& map, std::ostream& out) {
   out.put(static_cast<char>(header.size() & 0xff)).put(static_cast<char>(header.size() >> 8));
   out << header;
   for (std::size_t p = 0; p < map.positions.size(); ++p) {
-    for (int axis = 0; axis < 3; ++axis) write_double(map.positions[p][axis], out);
-    for (int f = 0; f < map.defined_figures; ++f) write_double(map.figures[p][f], out);
+    for (int axis = 0; axis < map.dimension; ++axis) write_double(map.positions[p][axis], out);
+    for (const Figure which : map.defined) write_double(figure(map.figures[p], which), out);
   }
 }
 

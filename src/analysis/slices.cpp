@@ -14,8 +14,10 @@ namespace {
 
 using internal::Probe;
 
-// Outlines of the workspace on the grid of a slice. Where one crosses a grid line is found by bisection.
-std::vector<Outline> outlines_of(Probe& probe, const SliceMap& grid, const std::vector<char>& inside) {
+// Outlines of a region on the grid of a slice; `inside` is `within` at the grid points. Where one crosses a
+// grid line is found by bisection.
+template <class Within>
+std::vector<Outline> outlines_of(const SliceMap& grid, const std::vector<char>& inside, const Within& within) {
   const auto point = [&](double iu, double iv) {
     Vector3 p;
     p[grid.slice.axis] = grid.slice.at;
@@ -24,13 +26,13 @@ std::vector<Outline> outlines_of(Probe& probe, const SliceMap& grid, const std::
     return p;
   };
   const auto at = [&](int iu, int iv) { return inside[iv * grid.nu + iu] != 0; };
-  const auto joined = [&](int iu, int iv) { return probe.inverse(point(iu + 0.5, iv + 0.5)).inside; };
+  const auto joined = [&](int iu, int iv) { return within(point(iu + 0.5, iv + 0.5)); };
   const auto crossing = [&](const internal::GridLine& line) -> std::array<double, 2> {
     Vector3 in = point(line.iu, line.iv), out = point(line.iu + (line.up ? 0 : 1), line.iv + (line.up ? 1 : 0));
     if (!at(line.iu, line.iv)) std::swap(in, out);
     while ((out - in).norm() > 1e-7) {
       const Vector3 middle = 0.5 * (in + out);
-      (probe.inverse(middle).inside ? in : out) = middle;
+      (within(middle) ? in : out) = middle;
     }
     return {in[grid.slice.u], in[grid.slice.v]};
   };
@@ -70,6 +72,7 @@ SliceMap map_slice(const Mechanism& mechanism, const Extents& extents, int axis,
     }
   }
   Probe probe(mechanism);
+  const std::array<bool, kFigureCount> defined = internal::defined_figures(mechanism, true);
   if (mechanism.delta()) {
     std::vector<double> values(n * kFigureCount);
     DeltaBatch(*mechanism.delta(), mechanism.active_range(0), limits)
@@ -86,17 +89,35 @@ SliceMap map_slice(const Mechanism& mechanism, const Extents& extents, int axis,
       const Probe::Answer answer = probe.inverse({coordinates[0][p], coordinates[1][p], coordinates[2][p]});
       inside[p] = answer.inside;
       if (!answer.inside) continue;
-      const FigureValues values = jacobian_figures(answer.jacobian, limits);
-      for (int f = 0; f < static_cast<int>(Figure::leg_singularity); ++f) map.values[f][p] = values[f];
+      const FigureValues values = probe.figures(answer, limits);
+      for (int f = 0; f < kFigureCount; ++f) {
+        if (defined[f]) map.values[f][p] = values[f];
+      }
     }
   }
-  map.slice.outlines = outlines_of(probe, map, inside);
+  map.slice.outlines = outlines_of(map, inside, [&probe](const Vector3& p) { return probe.inverse(p).inside; });
   map.slice.area = internal::enclosed_area(map.slice.outlines);
   return map;
 }
 
+Slice condition_region(const Mechanism& mechanism, const SliceMap& map, double limit) {
+  assert(!workspace_obstacle(mechanism) && limit > 1.0);
+  Slice region = map.slice;
+  region.outlines.clear();
+  region.area = 0.0;
+  if (map.nu == 0) return region;
+  const std::vector<double>& condition = map.values[static_cast<std::size_t>(Figure::condition_number)];
+  std::vector<char> inside(condition.size());
+  for (std::size_t p = 0; p < condition.size(); ++p) inside[p] = condition[p] < limit;
+  Probe probe(mechanism);
+  region.outlines =
+      outlines_of(map, inside, [&](const Vector3& p) { return internal::condition_number(probe, p) < limit; });
+  region.area = internal::enclosed_area(region.outlines);
+  return region;
+}
+
 SurfaceMesh workspace_surface(const Mechanism& mechanism, int n) {
-  assert(!workspace_obstacle(mechanism) && n > 0);
+  assert(!workspace_obstacle(mechanism) && n > 0 && internal::tool_dimension(mechanism) == 3);
   SurfaceMesh mesh;
   Probe probe(mechanism);
   const int side = n + 1;

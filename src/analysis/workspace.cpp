@@ -39,11 +39,6 @@ void stretch(IndexRange& range, const IndexRange& other) {
   }
 }
 
-int figure_count(const Mechanism& mechanism, bool all) {
-  if (!all) return kCoreFigureCount;
-  return mechanism.delta() ? kFigureCount : static_cast<int>(Figure::leg_singularity);
-}
-
 Plane sweep_plane_of_delta(const DeltaBatch& batch, std::int64_t i, const LatticeBox& box, double h, bool all) {
   const DeltaBatch::PlaneSummary summary = batch.sweep_plane(i, box[1], box[2], h, all);
   Plane plane;
@@ -90,9 +85,9 @@ Plane sweep_plane_of_legs(const Mechanism& mechanism, std::int64_t i, const Latt
                           const LatticeOptions& options) {
   Plane plane;
   Probe probe(mechanism);
-  const int count = figure_count(mechanism, options.all_figures);
+  const std::array<bool, kFigureCount> defined = internal::defined_figures(mechanism, options.all_figures);
   for (std::int64_t j = box[1].first; j <= box[1].last; ++j) {
-    probe.restart();
+    if (probe.dimension() == 3) probe.restart();
     for (std::int64_t k = box[2].first; k <= box[2].last; ++k) {
       const Vector3 point = lattice_point(i, j, k, options.spacing);
       const Probe::Answer answer = probe.inverse(point);
@@ -100,8 +95,10 @@ Plane sweep_plane_of_legs(const Mechanism& mechanism, std::int64_t i, const Latt
       ++plane.inside;
       stretch(plane.j, {j, j});
       stretch(plane.k, {k, k});
-      const FigureValues values = jacobian_figures(answer.jacobian, options.limits);
-      for (int f = 0; f < count; ++f) plane.figures[f].add(values[f], point);
+      const FigureValues values = probe.figures(answer, options.limits);
+      for (int f = 0; f < kFigureCount; ++f) {
+        if (defined[f]) plane.figures[f].add(values[f], point);
+      }
     }
   }
   return plane;
@@ -124,7 +121,8 @@ std::array<IndexRange, 3> lattice_box(const Mechanism& mechanism, double spacing
   }
   std::array<IndexRange, 3> indices;
   double points = 1.0;
-  for (int axis = 0; axis < 3; ++axis) {
+  if (tool_dimension(mechanism) == 2) indices[2] = {0, 0};
+  for (int axis = 0; axis < tool_dimension(mechanism); ++axis) {
     const double first = std::ceil(box[axis].min / spacing), last = std::floor(box[axis].max / spacing);
     points *= std::max(last - first + 1.0, 1.0);
     if (points > kMaxLatticePoints) throw std::length_error("the lattice has more than 10^12 points");
@@ -164,7 +162,8 @@ LatticeSweep sweep_workspace(const Mechanism& mechanism, const LatticeOptions& o
     stretch(bounds[2], plane.k);
     for (int f = 0; f < kFigureCount; ++f) figures[f].add(plane.figures[f]);
   }
-  sweep.volume = static_cast<double>(sweep.inside) * h * h * h;
+  const bool in_plane = internal::tool_dimension(mechanism) == 2;
+  (in_plane ? sweep.area : sweep.volume) = static_cast<double>(sweep.inside) * h * h * (in_plane ? 1.0 : h);
   if (sweep.inside == 0) return sweep;
   sweep.lattice_points = 1;
   for (int axis = 0; axis < 3; ++axis) {
@@ -187,20 +186,24 @@ WorkspaceMap map_workspace(const Mechanism& mechanism, const LatticeOptions& opt
   std::vector<WorkspaceMap> planes(static_cast<std::size_t>(internal::size(box[0])));
   WorkspaceMap map;
   map.spacing = h;
-  map.defined_figures = figure_count(mechanism, options.all_figures);
+  map.dimension = internal::tool_dimension(mechanism);
+  const std::array<bool, kFigureCount> defined = internal::defined_figures(mechanism, options.all_figures);
+  for (int f = 0; f < kFigureCount; ++f) {
+    if (defined[f]) map.defined.push_back(static_cast<Figure>(f));
+  }
   map.complete = internal::for_each_index(planes.size(), effort, [&](std::size_t index) {
     const std::int64_t i = box[0].first + static_cast<std::int64_t>(index);
     WorkspaceMap& plane = planes[index];
     if (!batch) {
       Probe probe(mechanism);
       for (std::int64_t j = box[1].first; j <= box[1].last; ++j) {
-        probe.restart();
+        if (probe.dimension() == 3) probe.restart();
         for (std::int64_t k = box[2].first; k <= box[2].last; ++k) {
           const Vector3 point = lattice_point(i, j, k, h);
           const Probe::Answer answer = probe.inverse(point);
           if (!answer.inside) continue;
           plane.positions.push_back(point);
-          plane.figures.push_back(jacobian_figures(answer.jacobian, options.limits));
+          plane.figures.push_back(probe.figures(answer, options.limits));
         }
       }
       return;

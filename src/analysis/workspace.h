@@ -12,11 +12,12 @@
 #include "zwidth/mechanism/figure.h"
 #include "zwidth/mechanism/mechanism.h"
 
-/// The reachable workspace of a mechanism with three active joints and a platform that only translates: the
-/// tool positions whose inverse, on the device's own branch, lies within the joint ranges. All coordinates in
-/// the base frame.
+/// The reachable workspace of a mechanism with three active joints and a platform that only translates, or with
+/// two and a tool that translates in a plane: the tool positions whose inverse, on the device's own branch,
+/// lies within the joint ranges. All coordinates in the base frame. What is said of z does not concern a plane.
 ///
-/// A delta goes through the batch kernels; any other mechanism through `solve_inverse`, point after point.
+/// A delta goes through the batch kernels, an R-CUBE through its closed form; any other mechanism through
+/// `solve_inverse`, point after point.
 
 namespace zwidth {
 
@@ -56,7 +57,8 @@ struct LatticeSweep {
   bool complete = true;              ///< false if it was cancelled: figures then cover only a part
   std::int64_t lattice_points = 0;   ///< of the bounding box of the workspace
   std::int64_t inside = 0;           ///< lattice points in the workspace
-  double volume = 0.0;               ///< inside x h^3 [m^3]
+  double volume = 0.0;               ///< inside x h^3 [m^3]; 0 in a plane
+  double area = 0.0;                 ///< inside x h^2 [m^2] of a tool in a plane, else 0
   std::array<Interval, 3> bounds{};  ///< of the lattice points inside [m]
   std::array<Statistic, kFigureCount> figures;
 
@@ -72,11 +74,12 @@ LatticeSweep sweep_workspace(const Mechanism& mechanism, const LatticeOptions& o
 struct WorkspaceMap {
   double spacing = 0.0;  ///< [m]
   bool complete = true;
-  int defined_figures = 0;            ///< figures 0 .. defined_figures - 1 were asked for and are defined
+  int dimension = 3;                  ///< 2 for a tool in a plane
+  std::vector<Figure> defined;        ///< figures that were asked for and are defined
   std::vector<Vector3> positions;     ///< by x, then y, then z, ascending [m]
   std::vector<FigureValues> figures;  ///< of each position
 
-  /// "x", "y", "z" and the names of the defined figures.
+  /// "x", "y", in space "z", and the names of the defined figures.
   std::vector<std::string> columns() const;
 };
 WorkspaceMap map_workspace(const Mechanism& mechanism, const LatticeOptions& options,
@@ -98,32 +101,39 @@ struct Extents {
 };
 Extents workspace_extents(const Mechanism& mechanism);
 
+/// The volume of a workspace, or the area if the tool moves in a plane.
 struct WorkspaceVolume {
   enum class Method {
     integral,  ///< of |det J| over the joint ranges
     lattice,   ///< counted, because det J changes sign or some joint values do not close
+    outline,   ///< the same in a plane: enclosed by the boundary
   };
   Method method = Method::integral;
-  double value = 0.0;           ///< [m^3]
-  double error_estimate = 0.0;  ///< [m^3]
-  int order = 0;                ///< Gauss-Legendre points per axis; 0 for the lattice
-  double spacing = 0.0;         ///< of the lattice [m]; 0 for the integral
+  double value = 0.0;           ///< [m^3], [m^2]
+  double error_estimate = 0.0;  ///< [m^3], [m^2]
+  int order = 0;                ///< Gauss-Legendre points per axis; 0 for the others
+  double spacing = 0.0;         ///< of the lattice, or between points of the boundary [m]; 0 for the integral
 };
+/// "integral", "lattice", "outline".
 const char* to_string(WorkspaceVolume::Method method);
 WorkspaceVolume workspace_volume(const Mechanism& mechanism, const Effort& effort = {});
 
-/// The largest sphere, or axis-aligned cube, that lies in the workspace.
+/// The largest sphere, or axis-aligned cube, that lies in the workspace; of a tool in a plane the largest
+/// circle, or axis-aligned square.
 struct InscribedShape {
   Vector3 centre = Vector3::Zero();  ///< [m]
-  double size = 0.0;                 ///< radius of the sphere, edge of the cube [m]
-  double volume = 0.0;               ///< [m^3]
+  double size = 0.0;                 ///< radius of the sphere or circle, edge of the cube or square [m]
+  double volume = 0.0;               ///< [m^3], of circle and square the area [m^2]
 };
 struct InscribedShapes {
   InscribedShape sphere;
   InscribedShape cube;
+
+  const InscribedShape& circle() const { return sphere; }  ///< what `sphere` is in a plane
+  const InscribedShape& square() const { return cube; }
 };
 /// Centre and size to some 1e-7 of the size, from inside, as long as the workspace has no holes finer than 1/24
-/// of it.
+/// (in a plane 1/80) of it.
 InscribedShapes inscribed_shapes(const Mechanism& mechanism);
 
 // ------------------------------------------------------------------------------------------- for figures
@@ -147,11 +157,17 @@ struct SliceMap {
   Interval u_range, v_range;                               ///< of the grid points [m]
   std::array<std::vector<double>, kFigureCount> values{};  ///< [figure][iv * nu + iu]
 };
-/// `points` grid points along the longer side of the plane.
+/// `points` grid points along the longer side of the plane. Where the tool moves in a plane, that plane is all
+/// there is: axis 2, at any height.
 SliceMap map_slice(const Mechanism& mechanism, const Extents& extents, int axis, double at, int points,
                    const DriveLimits& limits);
 
-/// The boundary of the workspace as triangles: the image of the faces of the joint ranges.
+/// The part of a map where the condition number is below `limit`, the outlines within 1e-6 m of where it is
+/// reached. REQUIRES: limit > 1, `map` of this mechanism.
+Slice condition_region(const Mechanism& mechanism, const SliceMap& map, double limit);
+
+/// The boundary of the workspace as triangles: the image of the faces of the joint ranges. REQUIRES: a tool
+/// that moves in space.
 struct SurfaceMesh {
   std::vector<Vector3> vertices;              ///< [m]
   std::vector<std::array<int, 3>> triangles;  ///< vertex indices

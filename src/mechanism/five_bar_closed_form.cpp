@@ -1,5 +1,6 @@
 #include "zwidth/math/trigonometry.h"
 #include "zwidth/mechanism/families.h"
+#include "zwidth/mechanism/family_of.h"
 #include "zwidth/mechanism/five_bar.h"
 
 namespace zwidth {
@@ -8,9 +9,12 @@ namespace {
 class FiveBarClosedForm final : public ClosedForm {
  public:
   explicit FiveBarClosedForm(const FiveBarDescription& description)
-      : geometry_(five_bar_geometry(description)),
+      : description_(description),
+        geometry_(five_bar_geometry(description)),
         mode_(working_mode(description)),
         assembly_mode_(description.assembly_mode) {}
+
+  const FiveBarDescription& description() const { return description_; }
 
   ClosedPosture forward(const ActiveVector& active) const noexcept override {
     const Vector2 theta(active[0], active[1]);
@@ -60,6 +64,7 @@ class FiveBarClosedForm final : public ClosedForm {
     return result;
   }
 
+  FiveBarDescription description_;
   FiveBarGeometry geometry_;
   WorkingMode mode_;
   int assembly_mode_;
@@ -69,6 +74,11 @@ class FiveBarClosedForm final : public ClosedForm {
 
 std::shared_ptr<const ClosedForm> closed_form_of(const FiveBarDescription& five_bar) {
   return std::make_shared<FiveBarClosedForm>(five_bar);
+}
+
+const FiveBarDescription* five_bar_of(const Mechanism& mechanism) noexcept {
+  const auto* five_bar = dynamic_cast<const FiveBarClosedForm*>(mechanism.closed_form());
+  return five_bar != nullptr ? &five_bar->description() : nullptr;
 }
 
 }  // namespace zwidth

@@ -1,4 +1,5 @@
 #include "zwidth/mechanism/families.h"
+#include "zwidth/mechanism/family_of.h"
 #include "zwidth/mechanism/r_cube.h"
 
 namespace zwidth {
@@ -8,7 +9,10 @@ constexpr Interval kAnyAngle{-1e9, 1e9};
 
 class RCubeClosedForm final : public ClosedForm {
  public:
-  RCubeClosedForm(const RCubeGeometry& geometry, int elbow) : geometry_(geometry), elbow_(elbow) {}
+  explicit RCubeClosedForm(const RCubeDescription& description)
+      : description_(description), geometry_(r_cube_geometry(description)), elbow_(description.elbow_mode) {}
+
+  const RCubeDescription& description() const { return description_; }
 
   ClosedPosture forward(const ActiveVector& active) const noexcept override {
     return closed(r_cube_forward(geometry_, active, r_cube_branches(0, elbow_)));
@@ -30,6 +34,7 @@ class RCubeClosedForm final : public ClosedForm {
     return result;
   }
 
+  RCubeDescription description_;
   RCubeGeometry geometry_;
   int elbow_;
 };
@@ -37,7 +42,12 @@ class RCubeClosedForm final : public ClosedForm {
 }  // namespace
 
 std::shared_ptr<const ClosedForm> closed_form_of(const RCubeDescription& r_cube) {
-  return std::make_shared<RCubeClosedForm>(r_cube_geometry(r_cube), r_cube.elbow_mode);
+  return std::make_shared<RCubeClosedForm>(r_cube);
+}
+
+const RCubeDescription* r_cube_of(const Mechanism& mechanism) noexcept {
+  const auto* r_cube = dynamic_cast<const RCubeClosedForm*>(mechanism.closed_form());
+  return r_cube != nullptr ? &r_cube->description() : nullptr;
 }
 
 }  // namespace zwidth

@@ -50,6 +50,8 @@ TEST(JsonKeys, AreAllDocumented) {
       {"at seven-dof --position 0.3,0,0.1 --orientation 0,0,0 --keep theta3", {}},
       {"at seven-dof --position 0.3,0,0.1 --maximise manipulability", {}},
       {"workspace delta --grid 5mm --all-figures", {}},
+      {"workspace five-bar --grid 10mm --all-figures", {}},
+      {"workspace five-bar --grid 10mm --against five-bar", {}},
       {"size delta", {}},
       {"size pneumatic-3 --load 1,0,2", {}},
       {"synthesise arm-cylinder --cylinder airpel-m9d12.5u --retracted 75mm --range 30deg --load 5N --distance "
@@ -62,6 +64,7 @@ TEST(JsonKeys, AreAllDocumented) {
       {"parts", {"parts.values"}},
       {"reproduce delta", {}},
       {"report delta -o " ZWIDTH_REPORT, {"drives.figures"}},
+      {"report five-bar -o " ZWIDTH_REPORT, {"drives.figures"}},
   };
   for (const Verb& verb : verbs) {
     const nlohmann::json document = run(verb.arguments);

@@ -142,6 +142,53 @@ void Plot::curves(const std::vector<std::vector<Point2>>& closed, int series) {
   body_ += fmt::format("<path class=\"wash s{0} f{0}\" fill-rule=\"evenodd\" d=\"{1}\"/>", series, d);
 }
 
+void Plot::area(const std::vector<std::vector<Point2>>& closed, std::string_view rgb) {
+  std::string d;
+  for (const auto& curve : closed) d += path(curve) + "Z";
+  body_ += fmt::format("<path fill=\"{}\" fill-rule=\"evenodd\" d=\"{}\"/>", rgb, d);
+}
+
+void Plot::edge(const std::vector<std::vector<Point2>>& closed) {
+  std::string d;
+  for (const auto& curve : closed) d += path(curve) + "Z";
+  body_ += fmt::format("<path class=\"axis\" d=\"{}\"/>", d);
+}
+
+void Plot::swatches(const std::vector<std::pair<std::string_view, std::string_view>>& meaning) {
+  double y = kTop + 20.0 * static_cast<double>(meaning.size());
+  for (const auto& [rgb, text] : meaning) {
+    y -= 20.0;
+    scale_ += fmt::format(
+        "<rect x=\"{0}\" y=\"{1}\" width=\"12\" height=\"12\" rx=\"2\" fill=\"{2}\"/><text x=\"{3}\" "
+        "y=\"{4}\">{5}</text>",
+        pixel(width_ - 58.0), pixel(y), rgb, pixel(width_ - 42.0), pixel(y + 10.5), escaped(text));
+  }
+}
+
+void Plot::bar(Point2 a, Point2 b, double width, std::string_view rgb) {
+  const std::string d =
+      fmt::format("M{} {}L{} {}", pixel(px(a.x)), pixel(py(a.y)), pixel(px(b.x)), pixel(py(b.y)));
+  over_ += fmt::format(
+      "<path d=\"{0}\" stroke=\"#2b3442\" stroke-width=\"{1}\" stroke-linecap=\"round\"/><path d=\"{0}\" "
+      "stroke=\"{2}\" stroke-width=\"{3}\" stroke-linecap=\"round\"/>",
+      d, pixel(width), rgb, pixel(width - 2.4));
+}
+
+void Plot::disc(Point2 centre, double radius, std::string_view rgb) {
+  over_ +=
+      fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{}\" stroke=\"#2b3442\" stroke-width=\"1.2\"/>",
+                  pixel(px(centre.x)), pixel(py(centre.y)), pixel(radius), rgb);
+}
+
+void Plot::ground(Point2 centre, double size) {
+  const double x = px(centre.x), y = py(centre.y), w = size;
+  over_ += fmt::format(
+      "<path d=\"M{} {}L{} {}H{}Z\" fill=\"#8a94a4\" stroke=\"#2b3442\" stroke-width=\"1.2\" "
+      "stroke-linejoin=\"round\"/>",
+      pixel(x), pixel(y - 0.3 * w), pixel(x + 0.9 * w), pixel(y + 1.4 * w), pixel(x - 0.9 * w));
+  disc(centre, 0.55 * size, "#dfe4ea");
+}
+
 void Plot::map(const Field& field, const std::vector<std::vector<Point2>>& boundary, std::string_view label,
                Interval range) {
   if (!(range.max > range.min)) range.max = range.min + std::max(1e-12, std::abs(range.min) * 1e-3);

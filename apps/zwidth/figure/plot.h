@@ -43,6 +43,15 @@ class Plot {
   void mark(Point2 point, std::string_view text);
   void silhouette(const std::vector<std::array<Point2, 3>>& triangles);     ///< their union, as a faint shadow
   void curves(const std::vector<std::vector<Point2>>& closed, int series);  ///< closed curves, filled
+  /// Closed curves filled with a colour that carries a value, holes left out.
+  void area(const std::vector<std::vector<Point2>>& closed, std::string_view rgb);
+  void edge(const std::vector<std::vector<Point2>>& closed);  ///< closed curves as thin lines
+  /// What the colours of areas mean, at the right, first at the bottom. Call it before anything else is drawn.
+  void swatches(const std::vector<std::pair<std::string_view, std::string_view>>& meaning);
+  /// A link of a mechanism, as wide as said [px].
+  void bar(Point2 a, Point2 b, double width, std::string_view rgb);
+  void disc(Point2 centre, double radius, std::string_view rgb);  ///< a joint; radius [px]
+  void ground(Point2 centre, double size);                        ///< a joint fixed to the ground; size [px]
   /// The figure; `title` is read out by screen readers.
   std::string svg(std::string_view title) const;
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "sheet_json.h"
+#include "sheet_text.h"
 #include "terminal.h"
 
 namespace zwidth {
@@ -70,8 +72,79 @@ Json farthest_json(const FarthestPosture& farthest) {
           {"joints", json_array(farthest.active)}};
 }
 
-Json index_json(const GlobalConditioning& conditioning) {
-  return conditioning.weight() > 0.0 ? json_number(conditioning.index()) : Json(nullptr);
+Json conditioning_json(const PostureSweep& sweep) {
+  return {{"postures", sweep.solved},
+          {"translation", conditioning_json(sweep.translation)},
+          {"rotation", conditioning_json(sweep.rotation)},
+          {"homogeneous", conditioning_json(sweep.homogeneous)},
+          {"characteristic_length", json_number(sweep.characteristic_length)}};
+}
+
+Json ranges_json(const ArmSheet& arm) {
+  Json ranges;
+  for (int k = 0; k < 3; ++k) {
+    ranges[kAxes[k]] = {json_number(arm.ends[k][0].distance), json_number(arm.ends[k][1].distance)};
+  }
+  return ranges;
+}
+
+Json volume_json(const ReachSheet& reach) {
+  return {{"volume", json_number(reach.volume.value)},
+          {"volume_error", json_number(reach.volume.error_estimate)},
+          {"inscribed_sphere",
+           {{"centre", json_array(reach.inscribed.sphere.centre)},
+            {"radius", json_number(reach.inscribed.sphere.size)}}},
+          {"inscribed_cube",
+           {{"centre", json_array(reach.inscribed.cube.centre)},
+            {"edge", json_number(reach.inscribed.cube.size)}}}};
+}
+
+Json share_json(const Share& share) {
+  return {{"share", json_number(share.value)}, {"error", json_number(share.error)}};
+}
+
+Json turning_json(const OrientationsAt& turning) {
+  return {{"reached", turning.reached},
+          {"orientations", turning.orientations ? share_json(*turning.orientations) : Json(nullptr)},
+          {"directions", share_json(turning.directions)}};
+}
+
+Json spread_json(const ShareSpread& spread) {
+  Json volumes = Json::array();
+  for (size_t level = 0; level < kShareLevels.size(); ++level) {
+    volumes.push_back({{"share", kShareLevels[level]},
+                       {"volume", json_number(spread.volume[level])},
+                       {"error", json_number(spread.volume_error[level])}});
+  }
+  return {{"mean", json_number(spread.mean)},
+          {"least", json_number(spread.least)},
+          {"most", json_number(spread.most)},
+          {"volumes", volumes}};
+}
+
+}  // namespace
+
+Json orientations_json(const std::optional<OrientationWorkspace>& workspace) {
+  if (!workspace) return nullptr;
+  return {{"places", workspace->places},
+          {"spacing", json_number(workspace->spacing)},
+          {"tool_axis", json_array(workspace->tool_axis)},
+          {"orientations", workspace->orientations ? spread_json(*workspace->orientations) : Json(nullptr)},
+          {"directions", spread_json(workspace->directions)}};
+}
+
+namespace {
+
+std::string axis_text(const Vector3& axis) {
+  for (int k = 0; k < 3; ++k) {
+    if (axis == Vector3::Unit(k)) return kAxes[k];
+  }
+  return point_text(axis);
+}
+
+std::string share_text(const Share& share) {
+  return fmt::format("{} %", number(100.0 * share.value, 3)) +
+         (share.error > 0.0 ? fmt::format(" ± {}", number(100.0 * share.error, 2)) : "");
 }
 
 }  // namespace
@@ -142,11 +215,50 @@ std::vector<ArmFact> reach_facts(const ArmSheet& arm) {
     facts.push_back({"largest cube", fmt::format("{} edge", quantity(inscribed.cube.size, kMilli, "mm")),
                      "centre " + point_text(inscribed.cube.centre)});
   }
-  if (arm.continuous.homogeneous.weight() > 0.0) {
-    facts.push_back(
-        {"global conditioning", number(arm.continuous.homogeneous.index(), 3),
-         fmt::format("rotations made lengths by {}", readable(arm.continuous.characteristic_length, "m", 3))});
+  const PostureSweep& sweep = arm.continuous;
+  if (sweep.translation.weight() > 0.0) {
+    facts.push_back({"global conditioning", number(sweep.translation.index(), 4),
+                     "of translation, mean of 1/(condition number K) over postures; 1 is best"});
+    facts.push_back({"", "", shares_by_class(sweep.translation)});
   }
+  if (sweep.homogeneous.weight() > 0.0) {
+    facts.push_back(
+        {"with rotation", number(sweep.homogeneous.index(), 4),
+         fmt::format("rotations made lengths by {}", readable(sweep.characteristic_length, "m", 3))});
+  }
+  return facts;
+}
+
+std::optional<PlaceOrientations> home_turning(const ArmSheet& arm) {
+  if (!arm.home || !arm.home->turning) return std::nullopt;
+  return PlaceOrientations{arm.home->tool.position, *arm.home->turning};
+}
+
+std::vector<ArmFact> orientation_facts(const std::optional<OrientationWorkspace>& workspace,
+                                       const std::optional<PlaceOrientations>& place) {
+  std::vector<ArmFact> facts;
+  if (!workspace) return facts;
+  const std::string axis = axis_text(workspace->tool_axis);
+  if (place) {
+    const std::string where = "at " + point_text(place->position);
+    if (!place->turning.reached) return {{"place", "not reached", where}};
+    if (place->turning.orientations)
+      facts.push_back({"orientations", share_text(*place->turning.orientations), "of all, " + where});
+    facts.push_back({fmt::format("directions of tool {}", axis), share_text(place->turning.directions),
+                     "of the sphere, " + where});
+  }
+  const auto over_all = [&](const char* name, const char* whole, const ShareSpread& spread) {
+    facts.push_back({fmt::format("{}, mean", name), fmt::format("{} %", number(100.0 * spread.mean, 3)),
+                     fmt::format("over {} places, from {} to {} %", workspace->places,
+                                 number(100.0 * spread.least, 3), number(100.0 * spread.most, 3))});
+    facts.push_back({whole,
+                     fmt::format("{} ± {}", quantity(spread.dexterous_volume(), 1e3, "dm³", 4),
+                                 quantity(spread.volume_error.back(), 1e3, "dm³", 2)),
+                     fmt::format("where all of them can be had; half of them in {}",
+                                 quantity(spread.volume[1], 1e3, "dm³", 4))});
+  };
+  if (workspace->orientations) over_all("orientations", "dexterous volume", *workspace->orientations);
+  over_all("directions", "any direction", workspace->directions);
   return facts;
 }
 
@@ -185,10 +297,7 @@ Json arm_json(const ArmSheet& arm) {
   entry["translation_conditioning"] = statistic_json(arm.continuous.translation_conditioning);
   entry["rotation_conditioning"] = statistic_json(arm.continuous.rotation_conditioning);
   entry["manipulability"] = statistic_json(arm.continuous.manipulability);
-  entry["global_conditioning"] = {{"translation", index_json(arm.continuous.translation)},
-                                  {"rotation", index_json(arm.continuous.rotation)},
-                                  {"homogeneous", index_json(arm.continuous.homogeneous)},
-                                  {"characteristic_length", json_number(arm.continuous.characteristic_length)}};
+  entry["conditioning"] = conditioning_json(arm.continuous);
   entry["continuous"] = loads_json(arm.continuous);
   entry["peak"] = arm.peak ? loads_json(*arm.peak) : Json(nullptr);
   entry["step"] = axes_json(arm.continuous.step);
@@ -196,11 +305,7 @@ Json arm_json(const ArmSheet& arm) {
   entry["lightest"] = statistic_json(arm.continuous.lightest);
   entry["heaviest"] = statistic_json(arm.continuous.heaviest);
   entry["gravity_torque"] = statistic_json(arm.continuous.gravity_torque);
-  Json ranges;
-  for (int k = 0; k < 3; ++k) {
-    ranges[kAxes[k]] = {json_number(arm.ends[k][0].distance), json_number(arm.ends[k][1].distance)};
-  }
-  entry["ranges"] = ranges;
+  entry["ranges"] = ranges_json(arm);
   entry["farthest"] = farthest_json(arm.farthest);
   if (arm.home) {
     entry["home"] = {{"joints", json_array(arm.home->active)},
@@ -210,24 +315,31 @@ Json arm_json(const ArmSheet& arm) {
                      {"condition_number", json_number(arm.home->translation.condition_number)},
                      {"gravity_torques", json_array(arm.home->gravity_torques)},
                      {"continuous_loads", json_array(arm.home->continuous_loads)},
-                     {"peak_loads", json_array(arm.home->peak_loads)}};
+                     {"peak_loads", json_array(arm.home->peak_loads)},
+                     {"turning", arm.home->turning ? turning_json(*arm.home->turning) : Json(nullptr)}};
   } else {
     entry["home"] = nullptr;
   }
+  entry["reach"] = nullptr;
   if (arm.reach) {
-    const ReachSheet& reach = *arm.reach;
-    entry["reach"] = {{"volume", json_number(reach.volume.value)},
-                      {"volume_error", json_number(reach.volume.error_estimate)},
-                      {"spacing", json_number(reach.volume.spacing)},
-                      {"inscribed_sphere",
-                       {{"centre", json_array(reach.inscribed.sphere.centre)},
-                        {"radius", json_number(reach.inscribed.sphere.size)}}},
-                      {"inscribed_cube",
-                       {{"centre", json_array(reach.inscribed.cube.centre)},
-                        {"edge", json_number(reach.inscribed.cube.size)}}}};
-  } else {
-    entry["reach"] = nullptr;
+    entry["reach"] = volume_json(*arm.reach);
+    entry["reach"]["spacing"] = json_number(arm.reach->volume.spacing);
   }
+  entry["orientations"] = orientations_json(arm.orientations);
+  return entry;
+}
+
+Json reach_json(const ArmSheet& arm) {
+  Json entry = volume_json(*arm.reach);
+  entry["ranges"] = ranges_json(arm);
+  entry["farthest"] = farthest_json(arm.farthest);
+  entry["conditioning"] = conditioning_json(arm.continuous);
+  return entry;
+}
+
+Json place_json(const PlaceOrientations& place) {
+  Json entry = turning_json(place.turning);
+  entry["position"] = json_array(place.position);
   return entry;
 }
 

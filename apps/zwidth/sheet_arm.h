@@ -38,9 +38,23 @@ struct ArmFact {
 
 /// Where the tool point can be.
 std::vector<ArmFact> reach_facts(const ArmSheet& arm);
+/// How the tool can be turned at a place.
+struct PlaceOrientations {
+  Vector3 position = Vector3::Zero();  ///< [m]
+  OrientationsAt turning;
+};
+/// In the home posture, if the sheet says.
+std::optional<PlaceOrientations> home_turning(const ArmSheet& arm);
+/// How the tool can be turned, at one place and over all; empty for arms that have no choice.
+std::vector<ArmFact> orientation_facts(const std::optional<OrientationWorkspace>& workspace,
+                                       const std::optional<PlaceOrientations>& place);
 /// The home posture.
 std::vector<ArmFact> home_facts(const ArmSheet& arm, const Mechanism& mechanism);
 
 Json arm_json(const ArmSheet& arm);
+/// Where the tool point can be, and how well conditioned: what `workspace` says. REQUIRES: arm.reach.
+Json reach_json(const ArmSheet& arm);
+Json orientations_json(const std::optional<OrientationWorkspace>& workspace);
+Json place_json(const PlaceOrientations& place);
 
 }  // namespace zwidth

@@ -31,6 +31,38 @@ Interval millimetres(const Interval& range, double margin) {
   return {(range.min - extra) * kMilli, (range.max + extra) * kMilli};
 }
 
+/// A coordinate in a title [m].
+std::string at_text(double value) {
+  return fmt::format("{} mm", trimmed(std::abs(value) < 5e-7 ? 0.0 : value * kMilli, 3));
+}
+
+/// How a picture of given size shows points from a corner as large as its margins leave room for.
+struct View {
+  double azimuth, elevation;         // as `Solid` has them [rad]
+  double left, right, top, bottom;   // margins [px]
+  double width, height;              // [px]
+  double scale = 1.0;                // [px/m]
+  Vector3 centre = Vector3::Zero();  // [m]
+
+  /// `flat` allows the picture to become lower.
+  void fit(const std::vector<Vector3>& points, bool flat) {
+    const Vector3 towards(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                          std::sin(elevation));
+    const Vector3 across(-std::sin(azimuth), std::cos(azimuth), 0.0), up = towards.cross(across);
+    Interval u{1e300, -1e300}, v = u;
+    for (const Vector3& point : points) {
+      u = {std::min(u.min, point.dot(across)), std::max(u.max, point.dot(across))};
+      v = {std::min(v.min, point.dot(up)), std::max(v.max, point.dot(up))};
+    }
+    scale = std::min((width - left - right) / std::max(1e-9, u.width()),
+                     (height - top - bottom) / std::max(1e-9, v.width()));
+    if (flat) height = std::max(0.4 * width, v.width() * scale + top + bottom);
+    centre =
+        across * (u.middle() - 0.5 * (left - right) / scale) + up * (v.middle() + 0.5 * (top - bottom) / scale);
+  }
+  Solid solid() const { return Solid(width, height, azimuth, elevation, scale, centre); }
+};
+
 // --------------------------------------------------------------------------------------------------- the
 // device
 
@@ -40,6 +72,7 @@ const Vector3 kArm(66, 122, 209);
 const Vector3 kForearm(205, 211, 220);
 const Vector3 kPlatform(240, 150, 60);
 const Vector3 kGlass(96, 150, 235);
+constexpr std::array<const char*, 3> kPanes = {"wash s4 f4", "wash s3 f3", "wash s1 f1"};  // normal to x, y, z
 
 /// Points of a circular sector, or of a whole disc, around `centre`, in the plane of `u` and `v`.
 std::vector<Vector3> arc(const Vector3& centre, const Vector3& u, const Vector3& v, double radius, double from,
@@ -131,11 +164,23 @@ void draw_links(Solid& solid, const Mechanism& mechanism, const Posture& posture
   const double bar = 0.03 * mechanism.characteristic_length();
   for (size_t l = 0; l < mechanism.legs().size(); ++l) {
     const LegModel& leg = mechanism.legs()[l];
+    // The first joint turns on the ground, or slides out of it.
+    const Vector3& foot = posture.joint_point(leg.first);
+    const JointModel& first = mechanism.joints()[static_cast<size_t>(leg.first)];
+    const bool slides = first.type == JointType::prismatic;
+    const double out = slides ? 1.4 * bar + posture.joints()[leg.first] : 1.4 * bar;
+    const Vector3 down = !slides && foot.dot(first.axis) > 0.0 ? first.axis : Vector3(-first.axis);
+    cylinder(solid, foot + (out + 1.2 * bar) * down, foot + out * down, 3.2 * bar, kDark);
+    cylinder(solid, foot + out * down, foot, 1.5 * bar, kSteel);
+    bool moved = false;
     for (int j = leg.first; j < leg.first + leg.count; ++j) {
       const bool last = j + 1 == leg.first + leg.count;
       const Vector3& from = posture.joint_point(j);
       const Vector3 to = last ? posture.leg_tip(static_cast<int>(l)) : posture.joint_point(j + 1);
-      if ((to - from).norm() > 1e-9) solid.bar(from, to, bar, j == leg.first ? kArm : kForearm);
+      if ((to - from).norm() > 1e-9) {
+        solid.bar(from, to, bar, moved ? kForearm : kArm);
+        moved = true;
+      }
       solid.ball(from, 1.5 * bar, kSteel);
     }
     const Vector3& tip = posture.leg_tip(static_cast<int>(l));
@@ -155,27 +200,48 @@ void draw_mesh(Solid& solid, const SurfaceMesh& mesh, const Vector3& centre, boo
   }
 }
 
+/// The lines of a cut, as curves in space.
+std::vector<std::vector<Vector3>> in_space(const Slice& slice) {
+  std::vector<std::vector<Vector3>> curves;
+  for (const Outline& outline : slice.outlines) {
+    curves.emplace_back();
+    for (const auto& point : outline) {
+      Vector3 p;
+      p[slice.axis] = slice.at;
+      p[slice.u] = point[0];
+      p[slice.v] = point[1];
+      curves.back().push_back(p);
+    }
+  }
+  return curves;
+}
+
 std::optional<SheetFigure> device_picture(const DataSheet& sheet, const Description& description,
                                           const SurfaceMesh& mesh) {
   const Mechanism mechanism(description);
-  ActiveVector middle(mechanism.active_count());
-  for (int i = 0; i < middle.size(); ++i) middle[i] = mechanism.active_range(i).middle();
-  const Solution solution = solve_forward(mechanism, middle);
+  ActiveVector joints(mechanism.active_count());
+  for (int i = 0; i < joints.size(); ++i) joints[i] = mechanism.active_range(i).middle();
+  const bool arm = sheet.arm && sheet.arm->home;
+  if (arm) joints = sheet.arm->home->active;
+  const Solution solution = solve_forward(mechanism, joints);
   if (!solution) return std::nullopt;
   double sector = 0.0;
   for (const DriveDescription& drive : description.drives) {
     if (const auto* capstan = std::get_if<CapstanDescription>(&drive.transmission))
       sector = 0.5 * capstan->output_diameter;
   }
-  Vector3 low = solution.posture->tool().position;
-  Vector3 high = low;
-  const auto grow = [&](const Vector3& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  };
+  std::vector<Vector3> seen = {solution.posture->tool().position};
+  const auto grow = [&](const Vector3& p) { seen.push_back(p); };
   for (const Vector3& vertex : mesh.vertices) grow(vertex);
+  std::array<std::vector<std::vector<Vector3>>, 3> cuts;
+  if (sheet.arm && sheet.arm->reach) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      cuts[axis] = in_space(sheet.arm->reach->slices[axis].slice);
+      for (const auto& curve : cuts[axis]) std::ranges::for_each(curve, grow);
+    }
+  }
   for (int j = 0; j < mechanism.joint_count(); ++j) grow(solution.posture->joint_point(j));
-  double floor = low.z();
+  double floor = 0.0;
   if (const auto& geometry = mechanism.delta()) {
     floor = -std::max(1.45 * sector, 0.3 * geometry->upper_arm);
     const double reach = geometry->base_radius + geometry->upper_arm;
@@ -185,11 +251,31 @@ std::optional<SheetFigure> device_picture(const DataSheet& sheet, const Descript
   Vector3 workspace_centre = Vector3::Zero();
   for (const Vector3& vertex : mesh.vertices)
     workspace_centre += vertex / static_cast<double>(mesh.vertices.size());
-  const double size = (high - low).norm();
-  Solid solid(900.0, 720.0, -1.32, 0.34, 965.0 / std::max(1e-9, size),
-              0.5 * (low + high) - Vector3(0.0, 0.0, 0.02 * size));
+  if (!mechanism.delta()) {
+    // Room for the feet.
+    const double foot = 0.13 * mechanism.characteristic_length();
+    for (const LegModel& leg : mechanism.legs()) {
+      const Vector3& p = solution.posture->joint_point(leg.first);
+      for (int k = 0; k < 3; ++k) {
+        grow(p + foot * Vector3::Unit(k));
+        grow(p - foot * Vector3::Unit(k));
+      }
+    }
+  }
+  View view{.azimuth = -1.32,
+            .elevation = 0.34,
+            .left = 30.0,
+            .right = 30.0,
+            .top = 26.0,
+            .bottom = 26.0,
+            .width = 900.0,
+            .height = 720.0};
+  view.fit(seen, true);
+  Solid solid = view.solid();
   solid.layer(0.26);
   draw_mesh(solid, mesh, workspace_centre, false);
+  solid.layer(0.7);
+  for (size_t axis = 0; axis < 3; ++axis) solid.pane(cuts[axis], kPanes[axis]);
   solid.layer(1.0);
   if (const auto& geometry = mechanism.delta()) {
     draw_delta(solid, *geometry, *solution.posture, sector, floor);
@@ -198,10 +284,12 @@ std::optional<SheetFigure> device_picture(const DataSheet& sheet, const Descript
   }
   solid.layer(0.2);
   draw_mesh(solid, mesh, workspace_centre, true);
-  const std::string caption = mechanism.delta()
-                                  ? "In the middle of its joint ranges, with its workspace. A sketch: link "
-                                    "lengths, sectors and workspace are to scale, the rest is not."
-                                  : "In the middle of its joint ranges. A sketch of the joints and links.";
+  std::string caption =
+      std::string(arm ? "In its home posture" : "In the middle of its joint ranges") +
+      (arm ? ", with three cuts through what its tool point reaches: normal to x violet, to y green, to z blue."
+           : ", with its workspace.");
+  caption += mechanism.delta() ? " A sketch: link lengths, sectors and workspace are to scale, the rest is not."
+                               : " A sketch: joints, lengths and workspace are to scale, the rest is not.";
   return SheetFigure{"device", "device", sheet.title.empty() ? sheet.name : sheet.title, caption,
                      solid.svg("The device and its workspace")};
 }
@@ -213,12 +301,26 @@ SheetFigure workspace_solid(const WorkspaceSheet& workspace) {
   const Vector3 low(range[0].min, range[1].min, range[2].min);
   const Vector3 high(range[0].max, range[1].max, range[2].max);
   const double size = (high - low).norm();
-  Solid solid(kWidth, 420.0, -1.05, 0.42, 520.0 / size, 0.5 * (low + high) - Vector3(0.0, 0.0, 0.08 * size));
   const double floor = low.z() - 0.12 * (high.z() - low.z());
   const auto xs = round_ticks(low.x() * kMilli, high.x() * kMilli, 5);
   const auto ys = round_ticks(low.y() * kMilli, high.y() * kMilli, 5);
   const auto zs = round_ticks(low.z() * kMilli, high.z() * kMilli, 4);
   const auto at = [&](double x, double y) { return Vector3(x / kMilli, y / kMilli, floor); };
+  View view{.azimuth = -1.05,
+            .elevation = 0.42,
+            .left = 46.0,
+            .right = 56.0,
+            .top = 30.0,
+            .bottom = 56.0,
+            .width = kWidth,
+            .height = 420.0};
+  std::vector<Vector3> seen = workspace.surface.vertices;
+  for (const double x : {xs.front(), xs.back()}) {
+    for (const double y : {ys.front(), ys.back()}) seen.push_back(at(x, y));
+  }
+  seen.emplace_back(low.x() - 0.03 * size, low.y() - 0.03 * size, high.z());
+  view.fit(seen, false);
+  Solid solid = view.solid();
   for (const double x : xs) {
     solid.thread(at(x, ys.front()), at(x, ys.back()), "grid");
     solid.text(at(x, ys.front()), fmt::format("{:g}", x), "middle", -8.0, 18.0);
@@ -227,7 +329,8 @@ SheetFigure workspace_solid(const WorkspaceSheet& workspace) {
     solid.thread(at(xs.front(), y), at(xs.back(), y), "grid");
     solid.text(at(xs.back(), y), fmt::format("{:g}", y), "start", 12.0, 3.0);
   }
-  const Vector3 corner = at(xs.front(), ys.front());
+  // The leftmost edge of the box.
+  const Vector3 corner(low.x() - 0.03 * size, low.y() - 0.03 * size, floor);
   solid.thread(corner, corner + Vector3(0.0, 0.0, high.z() - floor), "axis");
   for (const double z : zs) {
     const Vector3 on(corner.x(), corner.y(), z / kMilli);
@@ -277,12 +380,12 @@ SheetFigure view(const WorkspaceSheet& workspace, int normal) {
   plot.circle(flat(inscribed.sphere.centre), inscribed.sphere.size * kMilli, {});
   plot.rectangle(flat(inscribed.cube.centre), inscribed.cube.size * kMilli, {});
   const char* names[] = {"from the side", "from the front", "from above"};
-  return {fmt::format("view-{}{}", axis_name(slice.u), axis_name(slice.v)), "workspace",
-          fmt::format("Seen {}", names[normal]),
-          fmt::format(
-              "Line: cut at {} = {} mm. Shade: the whole workspace. Dashed: largest sphere and cube inside.",
-              axis_name(normal), trimmed(slice.at * kMilli, 3)),
-          plot.svg(fmt::format("Workspace {}", names[normal]))};
+  return {
+      fmt::format("view-{}{}", axis_name(slice.u), axis_name(slice.v)), "workspace",
+      fmt::format("Seen {}", names[normal]),
+      fmt::format("Line: cut at {} = {}. Shade: the whole workspace. Dashed: largest sphere and cube inside.",
+                  axis_name(normal), at_text(slice.at)),
+      plot.svg(fmt::format("Workspace {}", names[normal]))};
 }
 
 /// Finite values of a figure on all cuts: 2nd to 98th per cent, so that a few points near a singularity leave
@@ -300,7 +403,10 @@ Interval common_range(const WorkspaceSheet& workspace, Figure which) {
     std::nth_element(values.begin(), values.begin() + k, values.end());
     return values[static_cast<size_t>(k)];
   };
-  return {quantile(0.02), quantile(0.98)};
+  const Interval range{quantile(0.02), quantile(0.98)};
+  // The same everywhere: the colour of the middle.
+  const double middle = range.middle();
+  return range.width() < 1e-2 * std::abs(middle) ? Interval{0.9 * middle, 1.1 * middle} : range;
 }
 
 SheetFigure cut(const WorkspaceSheet& workspace, int normal, Figure which, const Interval& range,
@@ -323,8 +429,27 @@ SheetFigure cut(const WorkspaceSheet& workspace, int normal, Figure which, const
   plot.keep_shape();
   plot.map(field, curves(map.slice), unit, range);
   return {fmt::format("{}-{}{}", id, axis_name(map.slice.u), axis_name(map.slice.v)), section,
-          fmt::format("{}, {} = {} mm", name, axis_name(normal), trimmed(map.slice.at * kMilli, 3)), caption,
+          fmt::format("{}, {} = {}", name, axis_name(normal), at_text(map.slice.at)), caption,
           plot.svg(fmt::format("{}, cut normal to {}", name, axis_name(normal)))};
+}
+
+/// What an arm reaches in a plane, and how well conditioned it can be there.
+SheetFigure reach_cut(const ReachSlice& cut) {
+  const Slice& slice = cut.slice;
+  const PlaneGrid& grid = cut.conditioning;
+  const Field field{{grid.u.min * kMilli, grid.u.max * kMilli},
+                    {grid.v.min * kMilli, grid.v.max * kMilli},
+                    grid.nu,
+                    grid.nv,
+                    grid.values};
+  Plot plot(kMapWidth, kMapWidth, {fmt::format("{} [mm]", axis_name(slice.u)), millimetres(grid.u, 0.04)},
+            {fmt::format("{} [mm]", axis_name(slice.v)), millimetres(grid.v, 0.04)});
+  plot.keep_shape();
+  plot.map(field, curves(slice), "", {0.0, 1.0});
+  return {fmt::format("reach-{}{}", axis_name(slice.u), axis_name(slice.v)), "reach",
+          fmt::format("Reach, {} = {}", axis_name(slice.axis), at_text(slice.at)),
+          "Colour: 1/(condition number) of translation in the best posture found.",
+          plot.svg(fmt::format("Reach, cut normal to {}", axis_name(slice.axis)))};
 }
 
 // -------------------------------------------------------------------------------------------------------
@@ -482,6 +607,12 @@ std::vector<SheetFigure> sheet_figures(const DataSheet& sheet, const Description
                                 "In every direction, continuous.", "N"));
         }
       }
+    }
+  }
+  if (sheet.arm && sheet.arm->reach) {
+    for (const int normal : kCuts) {
+      const ReachSlice& cut = sheet.arm->reach->slices[static_cast<size_t>(normal)];
+      if (cut.conditioning.nu > 1 && cut.conditioning.nv > 1) figures.push_back(reach_cut(cut));
     }
   }
   for (size_t i = 0; i < sheet.drives.size(); ++i) {

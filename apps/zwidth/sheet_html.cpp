@@ -362,6 +362,14 @@ class Page {
     section("reach", "Reach of the tool point");
     facts(reach_facts(arm));
     show_figures("reach", "three");
+    if (arm.orientations) {
+      section("orientations", "Orientations of the tool");
+      how("How the tool can be turned at the places that it reaches, with the joints in their ranges: of "
+          "orientations spread evenly over all there are, and directions of its axis over the sphere, those "
+          "that "
+          "a posture has.");
+      facts(orientation_facts(arm.orientations, home_turning(arm)));
+    }
     if (arm.home) {
       section("home", "Home posture");
       facts(home_facts(arm, Mechanism(description_)));

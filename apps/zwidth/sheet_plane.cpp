@@ -162,26 +162,41 @@ class PlaneFigures {
 
   void singularities() {
     if (plane_.singular_curves.empty()) return;
-    Plot picture = plot(kWidth);
+    std::array<Interval, 2> window = window_;
+    for (const FiveBarCurve& curve : plane_.singular_curves) {
+      for (const auto& point : curve.points) {
+        for (size_t k = 0; k < 2; ++k)
+          window[k] = {std::min(window[k].min, 1.03 * point[k] * kMilli),
+                       std::max(window[k].max, 1.03 * point[k] * kMilli)};
+      }
+    }
+    Plot picture(kWidth, kWidth, {"x [mm]", window[0]}, {"y [mm]", window[1]});
+    picture.keep_shape();
     picture.curves(boundary_, 1);
     bool direct = false;
     for (const FiveBarCurve& curve : plane_.singular_curves) {
-      std::vector<Point2> points = millimetres({curve.points}).front();
-      if (curve.closed) points.push_back(points.front());
-      picture.line(points, is_direct(curve.kind) ? 2 : 4, {}, !is_direct(curve.kind));
+      const std::vector<Point2> points = millimetres({curve.points}).front();
+      // In halves: a line needs two ends to be simplified between.
+      const auto half = points.begin() + std::ssize(points) / 2;
+      std::vector<Point2> first(points.begin(), half + 1), second(half, points.end());
+      if (curve.closed) second.push_back(points.front());
+      for (const auto& part : {first, second})
+        picture.line(part, is_direct(curve.kind) ? 2 : 4, {}, !is_direct(curve.kind));
       direct = direct || is_direct(curve.kind);
     }
-    figures_.push_back({"singularities", "workspace", "Singularities",
-                        std::string("Dashed: a leg is stretched or folded, and the tool loses a freedom.") +
-                            (direct ? " Solid: the tool gains a freedom that locked motors do not hold." : ""),
-                        picture.svg("Singular curves in the plane")});
+    figures_.push_back(
+        {"singularities", "workspace", "Singularities",
+         std::string("In this working mode, whatever the joint ranges. Dashed: a leg is stretched or "
+                     "folded, and the tool loses a freedom.") +
+             (direct ? " Solid: the tool gains a freedom that locked motors do not hold." : ""),
+         picture.svg("Singular curves in the plane")});
   }
 
   void classes() {
     Plot picture = plot(kMapWidth);
     std::vector<std::pair<std::string_view, std::string_view>> key = {{kClassColours[0], "K<5"},
-                                                                      {kClassColours[1], "–10"},
-                                                                      {kClassColours[2], "–100"},
+                                                                      {kClassColours[1], "5–10"},
+                                                                      {kClassColours[2], "10–100"},
                                                                       {kClassColours[3], ">100"}};
     picture.swatches(key);
     picture.area(boundary_, kClassColours[3]);

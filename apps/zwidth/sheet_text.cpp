@@ -236,6 +236,7 @@ class SheetText {
       for (const ArmFact& fact : lines) text_.row(fact.name, fact.value, fact.note);
     };
     facts("Reach of the tool point", reach_facts(arm));
+    facts("Orientations of the tool", orientation_facts(arm.orientations, home_turning(arm)));
     facts("Home posture", home_facts(arm, Mechanism(description_)));
     for (const PostureTable& table : arm_tables(arm)) {
       text_.heading(table.title);

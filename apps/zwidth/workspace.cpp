@@ -18,6 +18,7 @@
 #include "verbs.h"
 #include "workspace_verb.h"
 
+#include "zwidth/analysis/comparison.h"
 #include "zwidth/analysis/data_sheet.h"
 #include "zwidth/description/units.h"
 #include "zwidth/mechanism/families.h"
@@ -45,16 +46,12 @@ std::string statistics_factor(std::string_view unit, double& factor) {
 
 }  // namespace
 
-std::string gnuplot_block(const SliceMap& map, Figure figure, const std::string& name) {
+std::string gnuplot_block(const std::vector<double>& values, int columns, const std::string& name) {
   std::string text = "$" + name + " << EOD\n";
-  const auto& values = map.values[static_cast<size_t>(figure)];
-  for (int v = 0; v < map.nv; ++v) {
-    for (int u = 0; u < map.nu; ++u) {
-      const double value =
-          values[static_cast<size_t>(v) * static_cast<size_t>(map.nu) + static_cast<size_t>(u)];
-      text += std::isfinite(value) ? fmt::format("{:.5g} ", value) : "NaN ";
-    }
-    text += "\n";
+  int column = 0;
+  for (const double value : values) {
+    text += std::isfinite(value) ? fmt::format("{:.5g} ", value) : "NaN ";
+    if (++column % columns == 0) text += "\n";
   }
   return text + "EOD\n";
 }
@@ -126,25 +123,39 @@ void read_figures(const LatticeSweep& sweep, int dimension, bool all, bool drive
   if (!notes.empty()) document["notes"] = notes;
 }
 
-void print_conditioning(const GlobalConditioning& conditioning, int dimension, Sheet& sheet) {
+void write_map(const WorkspaceMap& map, const std::string& path) {
+  std::ofstream out(path, std::ios::binary);
+  path.ends_with(".npy") ? write_npy(map, out) : write_csv(map, out);
+  out.close();
+  if (!out) throw MachineError(fmt::format("cannot write {}", path));
+}
+
+void print_conditioning(const GlobalConditioning& conditioning, const char* whole, Sheet& sheet) {
   sheet.row("global conditioning", number(conditioning.index(), 4),
             "mean of 1/(condition number K), 1 is best");
-  sheet.paragraph(fmt::format("Share of the {} by K: {}.", dimension == 2 ? "area" : "volume",
-                              shares_by_class(conditioning)),
-                  2, Tint::dim);
+  sheet.paragraph(fmt::format("Share of the {} by K: {}.", whole, shares_by_class(conditioning)), 2, Tint::dim);
 }
 
 namespace {
 
-/// Two devices on a common lattice. Throws InputError if they are not of one kind.
+/// What the hand alone moves does not decide where a tool that is a point can be.
+Description without_hand_joints(const Description& description) {
+  const auto* arm = std::get_if<SerialDescription>(&description.mechanism);
+  const bool point = arm != nullptr && arm->platform == PlatformFreedom::point;
+  return point ? without_free_joints(description) : description;
+}
+
+/// Two devices on common cells. Throws InputError if they are not of one kind.
 int compare(const WorkspaceArguments& arguments, const Model& model, double spacing, const Terminal& terminal) {
   DeviceArguments wanted;
   wanted.device = arguments.against;
-  const Model other(read_device(wanted));
+  const Model other(without_hand_joints(read_device(wanted)));
   const std::string first = model.description.name, second = other.description.name == first
                                                                  ? other.description.name + " (as it comes)"
                                                                  : other.description.name;
-  if (const auto obstacle = workspace_obstacle(other.mechanism))
+  if (const auto obstacle = comparison_obstacle(model.mechanism))
+    throw InputError(fmt::format("{}: {}", arguments.device, *obstacle));
+  if (const auto obstacle = comparison_obstacle(other.mechanism))
     throw InputError(fmt::format("--against {}: {}", arguments.against, *obstacle));
   const bool plane = in_plane(model.mechanism);
   if (plane != in_plane(other.mechanism)) {
@@ -157,15 +168,15 @@ int compare(const WorkspaceArguments& arguments, const Model& model, double spac
   try {
     Effort effort;
     effort.cancel = &stop_on_interrupt();
-    comparison = compare_workspaces(model.mechanism, other.mechanism, spacing, effort);
+    comparison = compare_workspaces(model.mechanism, other.mechanism, {.spacing = spacing}, effort);
   } catch (const std::length_error& error) {
     throw InputError(fmt::format("--grid {}: {}; take a coarser grid", arguments.grid, error.what()));
   }
-  const std::array<std::pair<const char*, double>, 5> figures = {{{"first", comparison.first},
-                                                                  {"second", comparison.second},
-                                                                  {"both", comparison.both},
-                                                                  {"only_first", comparison.only_first},
-                                                                  {"only_second", comparison.only_second}}};
+  const std::array<std::pair<const char*, Measure>, 5> figures = {{{"first", comparison.first},
+                                                                   {"second", comparison.second},
+                                                                   {"both", comparison.both},
+                                                                   {"only_first", comparison.only_first},
+                                                                   {"only_second", comparison.only_second}}};
   if (!comparison.complete) complain("stopped before the end: the figures cover a part of the workspace only");
   const int exit = comparison.complete ? kDone : kNo;
   if (arguments.json) {
@@ -175,25 +186,25 @@ int compare(const WorkspaceArguments& arguments, const Model& model, double spac
     document["grid"] = json_number(comparison.spacing);
     document["complete"] = comparison.complete;
     document["measure"] = plane ? "area" : "volume";
-    for (size_t f = 0; f < figures.size(); ++f) {
-      document[figures[f].first] = {{"value", json_number(figures[f].second)},
-                                    {"error", json_number(comparison.error[f])}};
-    }
+    for (const auto& [key, measure] : figures)
+      document[key] = {{"value", json_number(measure.value)}, {"error", json_number(measure.error)}};
+    document["gain"] = json_number(comparison.gain());
     print_json(document);
     return exit;
   }
   Sheet sheet(terminal);
   sheet.title(fmt::format("{} against {}", first, second),
-              fmt::format("common lattice of {}", format_quantity(comparison.spacing, Dimension::length)));
+              fmt::format("common cells of {}", format_quantity(comparison.spacing, Dimension::length)));
   const double factor = plane ? 1e4 : 1e6;
   const char* unit = plane ? "cm²" : "cm³";
   const std::array<std::string, 5> names = {first, second, "both", "only " + first, "only " + second};
   std::vector<std::vector<std::string>> rows;
   for (size_t f = 0; f < figures.size(); ++f) {
-    rows.push_back({names[f], quantity(figures[f].second, factor, unit, 5),
-                    "± " + quantity(comparison.error[f], factor, unit, 2),
-                    comparison.second > 0.0
-                        ? fmt::format("{} %", number(100.0 * figures[f].second / comparison.second, 4))
+    const Measure& measure = figures[f].second;
+    rows.push_back({names[f], quantity(measure.value, factor, unit, 5),
+                    "± " + quantity(measure.error, factor, unit, 2),
+                    comparison.second.value > 0.0
+                        ? fmt::format("{} %", number(100.0 * measure.value / comparison.second.value, 4))
                         : "–"});
   }
   sheet.table({plane ? "reachable area" : "reachable volume", "", "", "of " + second}, rows);
@@ -216,7 +227,8 @@ void draw(const Model& model, const Extents& extents, const DriveLimits& limits,
   }
   worst = std::min(worst, 50.0);
   for (size_t i = 0; i < maps.size(); ++i) {
-    script += gnuplot_block(maps[i], Figure::condition_number, fmt::format("map{}", i));
+    script += gnuplot_block(maps[i].values[static_cast<size_t>(Figure::condition_number)], maps[i].nu,
+                            fmt::format("map{}", i));
     script += gnuplot_outlines(maps[i].slice, fmt::format("edge{}", i));
   }
   const SurfaceMesh mesh = workspace_surface(model.mechanism, 16);
@@ -274,24 +286,23 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
   if (!grid) throw InputError(fmt::format("--grid \"{}\": {}; {}", arguments.grid, grid.rule, grid.advice));
   if (*grid.value <= 0.0)
     throw InputError(fmt::format("--grid \"{}\": must be positive; for example --grid 1mm", arguments.grid));
-  const bool npy = arguments.map.ends_with(".npy");
-  if (!arguments.map.empty() && !npy && !arguments.map.ends_with(".csv")) {
+  if (!arguments.map.empty() && !arguments.map.ends_with(".npy") && !arguments.map.ends_with(".csv")) {
     throw InputError(fmt::format("--map {}: must end in .csv or .npy", arguments.map));
   }
   if (!arguments.figure.empty() && !arguments.figure.ends_with(".svg") && !arguments.figure.ends_with(".png") &&
       !arguments.figure.ends_with(".pdf")) {
     throw InputError(fmt::format("--figure {}: must end in .svg, .png or .pdf", arguments.figure));
   }
-  // What the hand alone moves does not decide where a tool that is a point can be.
   const Description described = read_device(arguments);
-  const auto* arm = std::get_if<SerialDescription>(&described.mechanism);
-  const bool point = arm != nullptr && arm->platform == PlatformFreedom::point;
-  const Model model(point ? without_free_joints(described) : described);
+  const Model model(without_hand_joints(described));
+  const double asked = arguments.grid_given ? *grid.value : 0.0;
+  if (!arguments.against.empty()) return compare(arguments, model, asked, terminal);
   if (const auto obstacle = workspace_obstacle(model.mechanism)) {
+    if (!reach_obstacle(model.mechanism)) return arm_workspace(arguments, model, asked, terminal);
     throw InputError(fmt::format("{}: {}", model.description.name, *obstacle));
   }
-  if (!arguments.against.empty())
-    return compare(arguments, model, arguments.grid_given ? *grid.value : 0.0, terminal);
+  if (in_plane(model.mechanism) && !arguments.position.empty())
+    throw InputError("--position tells how a tool can be turned, and that of a plane cannot");
   if (in_plane(model.mechanism)) return plane_workspace(arguments, model, *grid.value, terminal);
   const bool driven = model.driven();
   LatticeOptions options;
@@ -325,10 +336,7 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
       progress.update(fraction * points, points);
     };
     const WorkspaceMap map = map_workspace(model.mechanism, options, effort);
-    std::ofstream out(arguments.map, std::ios::binary);
-    npy ? write_npy(map, out) : write_csv(map, out);
-    out.close();
-    if (!out) throw MachineError(fmt::format("cannot write {}", arguments.map));
+    write_map(map, arguments.map);
   }
   if (!arguments.figure.empty() && sweep.complete) draw(model, extents, options.limits, arguments.figure);
   const WorkspaceVolume volume = sweep.complete ? workspace_volume(model.mechanism, effort) : WorkspaceVolume{};
@@ -356,6 +364,15 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
     document["inscribed_cube"] = {{"centre", json_array(inscribed.cube.centre)},
                                   {"edge", json_number(inscribed.cube.size)}};
   }
+  // With the joints that the hand moves.
+  const Mechanism whole(with_turning_tool(described));
+  std::optional<OrientationWorkspace> orientations;
+  if (sweep.complete && !orientation_obstacle(whole)) {
+    const ReachMap reach = reach_map(whole, {.samples = 2'000'000}, {.cancel = effort.cancel});
+    orientations = orientation_workspace(whole, reach, {}, {.cancel = effort.cancel});
+  }
+  const Turning turning = turning_of(arguments, whole, std::move(orientations));
+  if (turning.orientations || turning.place) write_turning(turning, document);
   const WorkspaceConditioning conditioning =
       sweep.complete ? sweep_conditioning(model.mechanism, 2.0 * options.spacing, {.cancel = effort.cancel})
                      : WorkspaceConditioning{};
@@ -389,9 +406,14 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
     sheet.row("largest cube", quantity(inscribed.cube.size, kMilli, "mm edge"),
               "centre " + point_text(inscribed.cube.centre));
   }
+  print_turning(turning, sheet);
   sheet.heading("Figures over the workspace");
   sheet.table({"", "min", "mean", "max", ""}, rows);
-  if (sweep.complete) print_conditioning(conditioning.of_all, 3, sheet);
+  if (sweep.complete) {
+    print_conditioning(conditioning.of_all, "volume", sheet);
+    const Statistic& K = sweep[Figure::condition_number];
+    if (K.count > 0) sheet.row("nearest to isotropic", "K = " + number(K.min), "at " + point_text(K.min_at));
+  }
   if (driven) sheet.paragraph("Forces with the continuous torque of the drives.", 2, Tint::dim);
   if (!arguments.map.empty() && sweep.complete) sheet.paragraph("map: " + arguments.map, 2, Tint::dim);
   if (!arguments.figure.empty() && sweep.complete) sheet.paragraph("figure: " + arguments.figure, 2, Tint::dim);
@@ -402,14 +424,15 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
 }  // namespace
 
 void add_workspace(CLI::App& app, Context& context) {
-  CLI::App* verb =
-      add_verb(app, "workspace", "Reachable volume or area, ranges, inscribed shapes, maps, comparison",
-               "  zwidth workspace delta\n"
-               "  zwidth workspace delta --grid 0.5mm --all-figures\n"
-               "  zwidth workspace delta --grid 2mm --map delta.csv         one row per point\n"
-               "  zwidth workspace delta --figure delta.pdf                 cuts and surface (needs gnuplot)\n"
-               "  zwidth workspace delta --set mechanism.forearm=\"170 mm\" --against delta\n"
-               "\nCtrl-C stops with what there is, and exits 1.");
+  CLI::App* verb = add_verb(
+      app, "workspace", "Reachable volume or area, ranges, inscribed shapes, maps, comparison",
+      "  zwidth workspace delta\n"
+      "  zwidth workspace delta --grid 0.5mm --all-figures\n"
+      "  zwidth workspace delta --grid 2mm --map delta.csv         one row per point\n"
+      "  zwidth workspace delta --figure delta.pdf                 cuts and surface (needs gnuplot)\n"
+      "  zwidth workspace seven-dof --position 0.3,0,0.1           also how the tool can be turned there\n"
+      "  zwidth workspace delta --set mechanism.forearm=\"170 mm\" --against delta\n"
+      "\nCtrl-C stops with what there is, and exits 1.");
   auto arguments = std::make_shared<WorkspaceArguments>();
   add_device_arguments(*verb, *arguments);
   CLI::Option* grid = verb->add_option("--grid", arguments->grid, "spacing of the lattice, 1mm if not given")
@@ -418,6 +441,9 @@ void add_workspace(CLI::App& app, Context& context) {
           "--against", arguments->against,
           "compare with another device: what both reach, and what only one does; --set does not change it")
       ->type_name("DEVICE");
+  verb->add_option("--position", arguments->position,
+                   "where to tell how the tool of an arm can be turned; its home posture if not given")
+      ->type_name("X,Y,Z");
   verb->add_option("--map", arguments->map, "write figures at every point inside: FILE.csv or FILE.npy")
       ->type_name("FILE");
   verb->add_option("--figure", arguments->figure, "draw cuts and surface: FILE.svg, .png or .pdf")

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <fmt/format.h>
-#include <fstream>
 #include <mutex>
 #include <numbers>
 
@@ -23,7 +22,7 @@ void draw(const Model& model, const Extents& extents, const InscribedShapes& ins
   const double sheet_width = 760.0;
   std::string script =
       gnuplot_terminal(path, sheet_width, std::round((sheet_width - 190.0) * height / width + 110.0));
-  script += gnuplot_block(map, Figure::condition_number, "map");
+  script += gnuplot_block(map.values[static_cast<size_t>(Figure::condition_number)], map.nu, "map");
   script += gnuplot_outlines(map.slice, "edge");
   std::string lines;
   for (const double limit : {5.0, 10.0, 100.0}) {
@@ -102,10 +101,7 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
   if (sweep.complete) {
     if (!arguments.map.empty()) {
       const WorkspaceMap map = map_workspace(mechanism, options, effort);
-      std::ofstream out(arguments.map, std::ios::binary);
-      arguments.map.ends_with(".npy") ? write_npy(map, out) : write_csv(map, out);
-      out.close();
-      if (!out) throw MachineError(fmt::format("cannot write {}", arguments.map));
+      write_map(map, arguments.map);
     }
     area = workspace_volume(mechanism, effort);
     inscribed = inscribed_shapes(mechanism);
@@ -168,7 +164,12 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
   }
   sheet.heading("Figures over the workspace");
   sheet.table({"", "min", "mean", "max", ""}, rows);
-  if (sweep.complete) print_conditioning(conditioning.of_all, 2, sheet);
+  if (sweep.complete) {
+    print_conditioning(conditioning.of_all, "area", sheet);
+    const Statistic& K = sweep[Figure::condition_number];
+    if (K.count > 0)
+      sheet.row("nearest to isotropic", "K = " + number(K.min), "at " + plane_point_text(K.min_at));
+  }
   if (model.driven()) sheet.paragraph("Forces with the continuous torque of the drives.", 2, Tint::dim);
   if (!arguments.map.empty() && sweep.complete) sheet.paragraph("map: " + arguments.map, 2, Tint::dim);
   if (!arguments.figure.empty() && sweep.complete) sheet.paragraph("figure: " + arguments.figure, 2, Tint::dim);

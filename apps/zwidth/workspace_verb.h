@@ -5,6 +5,7 @@
 
 #include "context.h"
 #include "model.h"
+#include "sheet_arm.h"
 #include "sheet_json.h"
 
 #include "zwidth/analysis/conditioning.h"
@@ -20,6 +21,7 @@ struct WorkspaceArguments : DeviceArguments {
   std::string against;
   std::string map;
   std::string figure;
+  std::string position;
   bool all = false;
 };
 
@@ -31,17 +33,36 @@ inline bool in_plane(const Mechanism& mechanism) {
 int plane_workspace(const WorkspaceArguments& arguments, const Model& model, double spacing,
                     const Terminal& terminal);
 
+/// The verb for an arm whose tool turns. `spacing` 0: one that fits. REQUIRES:
+/// !reach_obstacle(model.mechanism).
+int arm_workspace(const WorkspaceArguments& arguments, const Model& model, double spacing,
+                  const Terminal& terminal);
+
+/// How the tool of an arm can be turned; nothing for others.
+struct Turning {
+  std::optional<OrientationWorkspace> orientations;
+  std::optional<PlaceOrientations> place;  ///< --position, or the home posture's
+};
+/// Throws InputError if --position makes no sense.
+Turning turning_of(const WorkspaceArguments& arguments, const Mechanism& mechanism,
+                   std::optional<OrientationWorkspace> orientations);
+void write_turning(const Turning& turning, Json& document);
+void print_turning(const Turning& turning, Sheet& sheet);
+
 /// `figures` and `notes` of the document, and a row of text per figure.
 void read_figures(const LatticeSweep& sweep, int dimension, bool all, bool driven, Json& document,
                   std::vector<std::vector<std::string>>& rows);
-void print_conditioning(const GlobalConditioning& conditioning, int dimension, Sheet& sheet);
+/// `whole`: what shares are of, "area".
+void print_conditioning(const GlobalConditioning& conditioning, const char* whole, Sheet& sheet);
+/// As .npy or .csv, by the name. Throws MachineError.
+void write_map(const WorkspaceMap& map, const std::string& path);
 
 /// The start of a gnuplot script that writes `path` (.svg, .png, .pdf), its size in pixels of an SVG. Throws
 /// MachineError if the file cannot be written.
 std::string gnuplot_terminal(const std::string& path, double width, double height);
 std::string gnuplot_palette();
-/// A data block of one figure of a slice, and one of its outlines [mm].
-std::string gnuplot_block(const SliceMap& map, Figure figure, const std::string& name);
+/// A data block of values on a grid, row after row, and one of a slice's outlines [mm].
+std::string gnuplot_block(const std::vector<double>& values, int columns, const std::string& name);
 std::string gnuplot_outlines(const Slice& slice, const std::string& name);
 
 }  // namespace zwidth

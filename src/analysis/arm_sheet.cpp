@@ -70,18 +70,28 @@ ArmSheet arm_sheet(const Mechanism& mechanism, const TorqueSource& continuous, c
   sheet.home = home_posture(mechanism, continuous, peak);
   report(0.4);
   sheet.complete = sheet.continuous.complete && (!sheet.peak || sheet.peak->complete);
-  if (reach_obstacle(mechanism) || !sheet.complete) return sheet;
+  const Mechanism& arm = options.turning != nullptr ? *options.turning : mechanism;
+  if (reach_obstacle(arm) || !sheet.complete) return sheet;
 
-  const ReachMap map = reach_map(mechanism, {.samples = options.reach_postures}, quiet);
-  report(0.7);
+  const ReachMap map =
+      reach_map(arm, {.samples = options.reach_postures, .spacing = options.reach_spacing}, quiet);
+  report(0.6);
   ReachSheet reach{.volume = reachable_volume(map), .inscribed = inscribed_shapes(map)};
   Vector3 through = reach.inscribed.sphere.centre;
   if (sheet.home && map.contains(sheet.home->tool.position)) through = sheet.home->tool.position;
   if (options.slice_postures > 0) {
-    reach.slices = slice_reach(mechanism, map, through, options.slice_postures, quiet);
+    reach.slices = slice_reach(arm, map, through, options.slice_postures, quiet);
   }
   sheet.complete = map.complete;
   sheet.reach = std::move(reach);
+  report(0.7);
+  if (options.orientation.places > 0 && !orientation_obstacle(arm)) {
+    sheet.orientations = orientation_workspace(arm, map, options.orientation, quiet);
+    sheet.complete = sheet.complete && sheet.orientations->complete;
+    if (sheet.home) {
+      sheet.home->turning = orientations_at(arm, sheet.home->tool.position, options.orientation);
+    }
+  }
   report(1.0);
   return sheet;
 }

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "zwidth/analysis/orientation.h"
 #include "zwidth/analysis/posture_sweep.h"
 #include "zwidth/analysis/reach_shapes.h"
 
@@ -14,7 +15,11 @@ namespace zwidth {
 struct ArmSheetOptions {
   std::int64_t postures = 20'000;           ///< of the figures
   std::int64_t reach_postures = 4'000'000;  ///< for the reach, whose box then has a tenth as many cubes
+  double reach_spacing = 0.0;               ///< of those cubes instead, if above zero [m]
   std::int64_t slice_postures = 400'000;    ///< for the conditioning on the cuts; 0 leaves the cuts out
+  OrientationOptions orientation;           ///< `places` 0 leaves the orientations out
+  /// Of an arm whose tool counts as a point `with_turning_tool`, for reach and orientations; else null.
+  const Mechanism* turning = nullptr;
   Effort effort;
 };
 
@@ -29,6 +34,7 @@ struct HomePosture {
   ToolVector continuous_loads;  ///< largest load along each tool axis, whichever way is weaker [N, N m]; empty
                                 ///< without drives
   ToolVector peak_loads;
+  std::optional<OrientationsAt> turning;  ///< how the tool can be turned there; empty as `orientations` below
 };
 
 struct ReachSheet {
@@ -45,6 +51,7 @@ struct ArmSheet {
   FarthestPosture farthest;                            ///< from the base origin
   std::optional<HomePosture> home;                     ///< empty if the loops do not close there
   std::optional<ReachSheet> reach;                     ///< empty for mechanisms that `reach_obstacle` refuses
+  std::optional<OrientationWorkspace> orientations;    ///< the same of `orientation_obstacle`
   bool complete = true;
 };
 

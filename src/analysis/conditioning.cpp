@@ -176,16 +176,6 @@ std::optional<Interval> widest_annulus(const Mechanism& mechanism, const std::ve
   return refined;
 }
 
-// ------------------------------------------------------------------------------------------- comparison
-
-double rounded_spacing(double wanted) {
-  const double power = std::pow(10.0, std::floor(std::log10(wanted)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= wanted * (1.0 - 1e-9)) return factor * power;
-  }
-  return 10.0 * power;
-}
-
 }  // namespace
 
 WorkspaceConditioning sweep_conditioning(const Mechanism& mechanism, double spacing, const Effort& effort) {
@@ -231,81 +221,6 @@ DexterousRegion dexterous_region(const Mechanism& mechanism, const Extents& exte
   region.outlines = fine.outlines;
   region.annulus = widest_annulus(mechanism, region.outlines, limit, region.spacing);
   return region;
-}
-
-WorkspaceComparison compare_workspaces(const Mechanism& first, const Mechanism& second, double spacing,
-                                       const Effort& effort) {
-  const std::array<const Mechanism*, 2> devices = {&first, &second};
-  const int dimension = internal::tool_dimension(first);
-  assert(!workspace_obstacle(first) && !workspace_obstacle(second));
-  assert(dimension == internal::tool_dimension(second));
-  WorkspaceComparison result;
-  result.dimension = dimension;
-  if (!(spacing > 0.0)) {
-    double size = 0.0;
-    bool fast = true;
-    for (const Mechanism* device : devices) {
-      size = std::max(size, workspace_extents(*device).size().maxCoeff());
-      fast = fast && Probe(*device).fast();
-    }
-    if (!(size > 0.0)) return result;
-    spacing = rounded_spacing(size / (dimension == 2 ? 400.0 : fast ? 150.0 : 40.0));
-  }
-  result.spacing = spacing;
-  std::array<IndexRange, 3> box = internal::lattice_box(first, spacing);
-  const std::array<IndexRange, 3> other = internal::lattice_box(second, spacing);
-  for (int axis = 0; axis < 3; ++axis) {
-    box[axis] = {std::min(box[axis].first, other[axis].first), std::max(box[axis].last, other[axis].last)};
-  }
-
-  // Counts of each sublattice: reached by the first, the second, both.
-  using Counts = std::array<std::array<std::int64_t, 3>, 8>;
-  std::vector<Counts> layers(static_cast<std::size_t>(internal::size(box[0])), Counts{});
-  result.complete = internal::for_each_index(layers.size(), effort, [&](std::size_t index) {
-    Probe probes[2] = {Probe(first), Probe(second)};
-    const std::int64_t i = box[0].first + static_cast<std::int64_t>(index);
-    for (std::int64_t j = box[1].first; j <= box[1].last; ++j) {
-      for (Probe& probe : probes) {
-        if (dimension == 3) probe.restart();
-      }
-      for (std::int64_t k = box[2].first; k <= box[2].last; ++k) {
-        const Vector3 point(coordinate(i, spacing), coordinate(j, spacing), coordinate(k, spacing));
-        const bool a = probes[0].inverse(point).inside, b = probes[1].inverse(point).inside;
-        auto& counts = layers[index][static_cast<std::size_t>((i & 1) + 2 * (j & 1) + 4 * (k & 1))];
-        counts[0] += a;
-        counts[1] += b;
-        counts[2] += a && b;
-      }
-    }
-  });
-
-  const int sublattices = dimension == 2 ? 4 : 8;
-  const double cell = std::pow(spacing, dimension);
-  std::array<double, 5> mean{}, squares{};
-  for (int s = 0; s < sublattices; ++s) {
-    std::array<double, 3> counts{};
-    for (const Counts& layer : layers) {
-      for (int what = 0; what < 3; ++what)
-        counts[what] += static_cast<double>(layer[static_cast<std::size_t>(s)][what]);
-    }
-    const std::array<double, 5> figures = {counts[0], counts[1], counts[2], counts[0] - counts[2],
-                                           counts[1] - counts[2]};
-    for (int f = 0; f < 5; ++f) {
-      const double value = figures[f] * cell * sublattices;
-      mean[f] += value / sublattices;
-      squares[f] += value * value;
-    }
-  }
-  result.first = mean[0];
-  result.second = mean[1];
-  result.both = mean[2];
-  result.only_first = mean[3];
-  result.only_second = mean[4];
-  for (int f = 0; f < 5; ++f) {
-    const double variance = std::max(0.0, squares[f] - sublattices * mean[f] * mean[f]) / (sublattices - 1);
-    result.error[f] = std::sqrt(variance / sublattices);
-  }
-  return result;
 }
 
 }  // namespace zwidth

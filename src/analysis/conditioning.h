@@ -38,24 +38,4 @@ struct DexterousRegion {
 DexterousRegion dexterous_region(const Mechanism& mechanism, const Extents& extents, double limit = 5.0,
                                  int points = 401);
 
-/// Two workspaces of the same kind in one base frame, counted on a common lattice.
-struct WorkspaceComparison {
-  int dimension = 3;         ///< 2: areas [m^2], 3: volumes [m^3]
-  double spacing = 0.0;      ///< [m]
-  bool complete = true;      ///< false if it was cancelled
-  double first = 0.0;        ///< of the first device
-  double second = 0.0;       ///< of the second
-  double both = 0.0;         ///< reached by both
-  double only_first = 0.0;   ///< by the first alone
-  double only_second = 0.0;  ///< by the second alone
-  /// Standard error of each figure above, in their order, from how the sublattices of every second point
-  /// differ.
-  std::array<double, 5> error{};
-};
-/// Points along the longest side of the box around both, rounded to a spacing of 1, 2 or 5 times a power of
-/// ten. REQUIRES: both can be answered for, and their tools move in equally many dimensions; points > 1. A
-/// `spacing` above zero [m] is taken as it is; throws std::length_error as `sweep_workspace`.
-WorkspaceComparison compare_workspaces(const Mechanism& first, const Mechanism& second, double spacing = 0.0,
-                                       const Effort& effort = {});
-
 }  // namespace zwidth

@@ -222,7 +222,7 @@ TorqueRange torque_range(const std::vector<std::optional<Drive>>& drives, bool p
 
 ArmSheet arm_of(const Mechanism& mechanism, const std::vector<std::optional<Drive>>& drives,
                 const std::vector<std::optional<PneumaticDrive>>& cylinders, const ActiveVector& joint_step,
-                const DataSheetOptions& options) {
+                const Mechanism& turning, const DataSheetOptions& options) {
   bool driven = true, stepped = true;
   for (int j = 0; j < mechanism.active_count(); ++j) {
     const bool has_drive = drives[static_cast<std::size_t>(j)] || cylinders[static_cast<std::size_t>(j)];
@@ -240,6 +240,7 @@ ArmSheet arm_of(const Mechanism& mechanism, const std::vector<std::optional<Driv
   };
   ArmSheetOptions arm{.effort = options.effort};
   if (options.slice_points <= 1) arm.slice_postures = 0;
+  if (mechanism.platform() == PlatformFreedom::point) arm.turning = &turning;
   return arm_sheet(mechanism, source(false), source(true), stepped ? joint_step : ActiveVector(), arm);
 }
 
@@ -273,9 +274,7 @@ PlaneSheet plane_sheet(const Mechanism& mechanism, const LatticeOptions& lattice
     for (const double limit : {5.0, 10.0, 100.0})
       plane.condition_regions.push_back(condition_region(mechanism, plane.map, limit));
     if (const auto* five_bar = five_bar_of(mechanism)) {
-      const FiveBarCurveOptions own{.mode = working_mode(*five_bar),
-                                    .ranges = {five_bar->left_range, five_bar->right_range}};
-      plane.singular_curves = singular_curves(five_bar_geometry(*five_bar), own);
+      plane.singular_curves = singular_curves(five_bar_geometry(*five_bar), {.mode = working_mode(*five_bar)});
     }
   }
   return plane;
@@ -383,7 +382,8 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
   sheet.stiffness = stiffness_sheet(mechanism, drives);
 
   if (mechanism.tool_turns() || mechanism.platform() == PlatformFreedom::point) {
-    sheet.arm = arm_of(mechanism, drives, cylinders, sheet.joint_resolution, options);
+    const Mechanism turning(with_turning_tool(description));
+    sheet.arm = arm_of(mechanism, drives, cylinders, sheet.joint_resolution, turning, options);
     sheet.complete = sheet.arm->complete;
     return sheet;
   }

@@ -128,7 +128,7 @@ struct PlaneSheet {
   SliceMap map;                          ///< of the whole plane
   std::vector<Slice> condition_regions;  ///< where the condition number is below 5, 10 and 100
   DexterousRegion dexterous;
-  std::vector<FiveBarCurve> singular_curves;  ///< of a five-bar, in its own working mode and joint ranges
+  std::vector<FiveBarCurve> singular_curves;  ///< of a five-bar in its own working mode, at any crank angles
 };
 
 struct DataSheet {

@@ -1,6 +1,5 @@
 #include "zwidth/analysis/reach.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -9,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "zwidth/analysis/internal/bounded_step.h"
 #include "zwidth/analysis/internal/parallel.h"
 #include "zwidth/analysis/posture_sweep.h"
 #include "zwidth/mechanism/batch_serial.h"
@@ -109,79 +109,32 @@ std::vector<std::uint64_t> nearest_samples(const Mechanism& mechanism, const Box
   return nearest;
 }
 
-// Leads the tool point to a place by Newton's method with the joints in their ranges. Joints at an end that
-// would have to go beyond it stay there, and the others do their share.
+// Leads the tool point to a place by Newton's method with the joints in their ranges.
 class Leader {
  public:
-  explicit Leader(const Mechanism& mechanism) : chain_(*mechanism.serial()) {
-    for (int j = 0; j < mechanism.active_count(); ++j) {
-      ranges_.push_back(mechanism.active_range(j));
-      weights_.push_back(ranges_.back().width() * ranges_.back().width());
-    }
-  }
+  explicit Leader(const Mechanism& mechanism) : chain_(*mechanism.serial()), step_(mechanism) {}
 
   // Whether the tool gets within `tolerance` of `goal`; `q` is then the posture.
   bool lead(ActiveVector& q, const Vector3& goal, double tolerance) const noexcept {
     constexpr int kSteps = 12;
+    SerialForward here;
     double before = std::numeric_limits<double>::infinity();
     for (int step = 0; step <= kSteps; ++step) {
-      chain_.forward(q, here_);
-      const Vector3 gap = goal - here_.tool.position;
+      chain_.forward(q, here);
+      const Vector3 gap = goal - here.tool.position;
       const double distance = gap.norm();
       if (distance <= tolerance) return true;
       // At a boundary of the reach the gap stops shrinking.
       if (step > 2 && distance > 0.9 * before) return false;
       before = distance;
-      if (!advance(q, gap)) return false;
+      if (!step_.take<3>(here.jacobian, gap, q)) return false;
     }
     return false;
   }
 
  private:
-  // One step of least weighted length; false where no joint can help.
-  bool advance(ActiveVector& q, Vector3 gap) const noexcept {
-    const auto n = static_cast<int>(ranges_.size());
-    unsigned held = 0;
-    for (int pass = 0; pass < n; ++pass) {
-      Matrix3 A = Matrix3::Zero();
-      for (int j = 0; j < n; ++j) {
-        if ((held >> j & 1U) != 0) continue;
-        const Vector3 column = here_.jacobian.col(j).head<3>();
-        A.noalias() += weights_[static_cast<std::size_t>(j)] * column * column.transpose();
-      }
-      const double scale = A.trace();
-      if (!(scale > 0.0)) return false;
-      A.diagonal().array() += 1e-9 * scale;
-      const Vector3 pull = A.inverse() * gap;
-      // The first joints that would leave their ranges are put at the end, and the step is asked for anew.
-      unsigned leaving = 0;
-      std::array<double, kMaxActive> change{};
-      for (int j = 0; j < n; ++j) {
-        if ((held >> j & 1U) != 0) continue;
-        change[j] = weights_[static_cast<std::size_t>(j)] * here_.jacobian.col(j).head<3>().dot(pull);
-        const Interval& range = ranges_[static_cast<std::size_t>(j)];
-        if (q[j] + change[j] < range.min || q[j] + change[j] > range.max) leaving |= 1U << j;
-      }
-      for (int j = 0; j < n; ++j) {
-        const Interval& range = ranges_[static_cast<std::size_t>(j)];
-        if (leaving == 0) {
-          q[j] = std::clamp(q[j] + change[j], range.min, range.max);
-        } else if ((leaving >> j & 1U) != 0) {
-          const double end = q[j] + change[j] < range.min ? range.min : range.max;
-          gap -= here_.jacobian.col(j).head<3>() * (end - q[j]);
-          q[j] = end;
-        }
-      }
-      if (leaving == 0) return true;
-      held |= leaving;
-    }
-    return true;
-  }
-
   const SerialChain& chain_;
-  std::vector<Interval> ranges_;
-  std::vector<double> weights_;  // squared widths of the ranges: joints of either kind then compare
-  mutable SerialForward here_;
+  internal::BoundedStep step_;
 };
 
 // Tests the middle of every cube.
@@ -312,6 +265,33 @@ ReachMap reach_map(const Mechanism& mechanism, const ReachOptions& options, cons
   return map;
 }
 
+namespace {
+
+// Sum over the planes between layers of cubes of (faces of the boundary in that plane)^2. A flat side of the
+// reach lies somewhere between two planes, so all its faces err by the same part of a spacing, evenly
+// distributed: by 1/sqrt(12) in the mean square. Those of a curved side lie in many planes, and err by chance.
+double squared_faces(const ReachMap& map) {
+  const Box box{map.spacing, map.first, map.count};
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> faces(static_cast<std::size_t>(map.count[axis]) + 1);
+    for (std::size_t cube = 0; cube < map.inside.size(); ++cube) {
+      if (map.inside[cube] == 0) continue;
+      const Indices at = box.place(cube);
+      for (const std::int64_t step : {-1, 1}) {
+        Indices next = at;
+        next[axis] += step;
+        if (box.holds(next) && map.inside[box.index(next)] != 0) continue;
+        faces[static_cast<std::size_t>(std::max(at[axis], next[axis]))] += 1.0;
+      }
+    }
+    for (const double count : faces) sum += count * count;
+  }
+  return sum;
+}
+
+}  // namespace
+
 ReachableVolume reachable_volume(const ReachMap& map) {
   ReachableVolume volume{.spacing = map.spacing, .complete = map.complete};
   const Box box{map.spacing, map.first, map.count};
@@ -332,6 +312,7 @@ ReachableVolume reachable_volume(const ReachMap& map) {
   std::int64_t all = 0;
   for (const std::int64_t count : counts) all += count;
   volume.value = static_cast<double>(all) * cube;
+  volume.error_estimate = std::sqrt(squared_faces(map) / 12.0) * cube;
   for (const std::int64_t count : counts) {
     // Where a flat side lies along the lattice, which is the worst case, twice the spacing errs twice as much.
     const double apart = std::abs(8.0 * static_cast<double>(count) * cube - volume.value);
@@ -348,26 +329,6 @@ ReachableVolume reachable_volume(const ReachMap& map) {
 ReachableVolume reachable_volume(const Mechanism& mechanism, const ReachOptions& options,
                                  const Effort& effort) {
   return reachable_volume(reach_map(mechanism, options, effort));
-}
-
-ReachComparison compare_reach(const Mechanism& first, const Mechanism& second, const ReachOptions& options,
-                              const Effort& effort) {
-  ReachOptions same = options;
-  if (same.spacing == 0.0) same.spacing = std::max(box_of(first, options).h, box_of(second, options).h);
-  const ReachMap a = reach_map(first, same, effort), b = reach_map(second, same, effort);
-  ReachComparison comparison{.first = reachable_volume(a), .second = reachable_volume(b)};
-  const Box box{a.spacing, a.first, a.count};
-  std::int64_t both = 0;
-  for (std::size_t cube = 0; cube < a.inside.size(); ++cube) {
-    if (a.inside[cube] == 0) continue;
-    const Indices at = box.place(cube);
-    both += b.at(a.first[0] + at[0], a.first[1] + at[1], a.first[2] + at[2]) ? 1 : 0;
-  }
-  const double volume = std::pow(a.spacing, 3);
-  comparison.both = static_cast<double>(both) * volume;
-  comparison.only_first = comparison.first.value - comparison.both;
-  comparison.only_second = comparison.second.value - comparison.both;
-  return comparison;
 }
 
 }  // namespace zwidth

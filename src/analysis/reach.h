@@ -48,8 +48,9 @@ struct ReachMap {
 ReachMap reach_map(const Mechanism& mechanism, const ReachOptions& options = {}, const Effort& effort = {});
 
 struct ReachableVolume {
-  double value = 0.0;                ///< cubes reached times their volume [m^3]
-  double error_estimate = 0.0;       ///< half of how far the sublattices of every second cube are off [m^3]
+  double value = 0.0;           ///< cubes reached times their volume [m^3]
+  double error_estimate = 0.0;  ///< what flat sides may err between two layers of cubes, and half of how far
+                                ///< the sublattices of every second cube are off: the larger [m^3]
   std::array<Interval, 3> bounds{};  ///< of the cubes reached [m]
   double spacing = 0.0;              ///< [m]
   bool complete = true;
@@ -57,18 +58,5 @@ struct ReachableVolume {
 ReachableVolume reachable_volume(const ReachMap& map);
 ReachableVolume reachable_volume(const Mechanism& mechanism, const ReachOptions& options = {},
                                  const Effort& effort = {});
-
-/// Two reaches in one base frame.
-struct ReachComparison {
-  ReachableVolume first, second;
-  double both = 0.0;         ///< reached by both [m^3]
-  double only_first = 0.0;   ///< [m^3]
-  double only_second = 0.0;  ///< [m^3]
-  /// first/second - 1: what the first has more.
-  double gain() const { return first.value / second.value - 1.0; }
-};
-/// REQUIRES: both are answered for by `reach_obstacle`.
-ReachComparison compare_reach(const Mechanism& first, const Mechanism& second, const ReachOptions& options = {},
-                              const Effort& effort = {});
 
 }  // namespace zwidth

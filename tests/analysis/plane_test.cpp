@@ -377,30 +377,6 @@ TEST(Dexterity, NoAnnulusWhereTheRegionDoesNotGoRoundTheOrigin) {
   EXPECT_FALSE(region.annulus);
 }
 
-TEST(Comparison, OfADeviceWithItselfAndWithALargerOne) {
-  const Mechanism small(describe(five_bar(0.05, 0.16, 0.06)));
-  const WorkspaceComparison same = compare_workspaces(small, small);
-  EXPECT_EQ(same.only_first, 0.0);
-  EXPECT_EQ(same.first, same.both);
-  EXPECT_NEAR(same.first, workspace_volume(small).value, 5.0 * same.error[0] + 1e-5 * same.first);
-
-  const Mechanism large(describe(five_bar(0.10, 0.32, 0.12)));
-  const WorkspaceComparison two = compare_workspaces(small, large, 1e-3);
-  EXPECT_NEAR(two.second / two.first, 4.0, 0.02);
-  EXPECT_NEAR(two.both + two.only_first, two.first, 1e-15);
-  EXPECT_NEAR(two.both + two.only_second, two.second, 1e-15);
-  // By the textbook, on the same lattice.
-  double both = 0.0;
-  for (int i = -300; i <= 300; ++i) {
-    for (int j = 0; j <= 450; ++j) {
-      const Textbook a = textbook(five_bar(0.05, 0.16, 0.06), 1e-3 * i, 1e-3 * j);
-      const Textbook b = textbook(five_bar(0.10, 0.32, 0.12), 1e-3 * i, 1e-3 * j);
-      both += a.reached && a.own_assembly && b.reached && b.own_assembly;
-    }
-  }
-  EXPECT_NEAR(two.both, both * 1e-6, 1e-12);
-}
-
 TEST(Plane, DataSheetHasWhatAPlanarDeviceCanDo) {
   const DataSheet sheet = data_sheet(describe(kPublished), {.spacing = 4e-3, .slice_points = 41});
   EXPECT_FALSE(sheet.workspace);

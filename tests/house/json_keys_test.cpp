@@ -52,6 +52,8 @@ TEST(JsonKeys, AreAllDocumented) {
       {"workspace delta --grid 5mm --all-figures", {}},
       {"workspace five-bar --grid 10mm --all-figures", {}},
       {"workspace five-bar --grid 10mm --against five-bar", {}},
+      {"workspace seven-dof --grid 60mm", {}},
+      {"workspace pneumatic-3 --grid 20mm", {}},
       {"size delta", {}},
       {"size pneumatic-3 --load 1,0,2", {}},
       {"synthesise arm-cylinder --cylinder airpel-m9d12.5u --retracted 75mm --range 30deg --load 5N --distance "

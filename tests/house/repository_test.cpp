@@ -88,6 +88,17 @@ TEST(Repository, EveryValueOfADeviceOrPartHasASource) {
   }
 }
 
+// `tools/make_images` draws and writes it anew.
+TEST(Repository, GalleryShowsEveryDevice) {
+  const std::string gallery = read(root() / "docs/gallery.md");
+  for (const std::filesystem::path& file : files(root() / "devices")) {
+    if (file.extension() != ".toml") continue;
+    const std::string picture = "images/" + file.stem().string() + ".png";
+    EXPECT_NE(gallery.find("](" + picture + ")"), std::string::npos) << picture;
+    EXPECT_LT(std::filesystem::file_size(root() / "docs" / picture), 150'000u) << picture;
+  }
+}
+
 TEST(Repository, LinksOfTheDocumentsResolve) {
   const std::regex link(R"(\]\(([^)\s]+)\))");
   int count = 0;

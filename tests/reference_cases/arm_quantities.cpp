@@ -2,6 +2,7 @@
 
 #include "quantities.h"
 
+#include "zwidth/analysis/comparison.h"
 #include "zwidth/analysis/posture_sweep.h"
 #include "zwidth/analysis/reach.h"
 #include "zwidth/mechanism/srs_arm.h"
@@ -102,9 +103,7 @@ void add_arm(Quantities& q) {
     return Values{reachable_volume(positioning_stage(in, false), {.samples = 4'000'000}).value};
   };
   q["workspace_gain_of_theta3"] = [](const Inputs& in) {
-    return Values{
-        compare_reach(positioning_stage(in, false), positioning_stage(in, true), {.samples = 2'000'000})
-            .gain()};
+    return Values{compare_workspaces(positioning_stage(in, false), positioning_stage(in, true)).gain()};
   };
   q["maximum_reach"] = [](const Inputs& in) {
     return Values{farthest_from(positioning_stage(in, false), Vector3::Zero()).distance};

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "figure/field.h"
+
 namespace zwidth {
 
 Solid::Solid(double width, double height, double azimuth, double elevation, double scale, const Vector3& centre)
@@ -122,6 +124,29 @@ void Solid::plate(const std::vector<Vector3>& corners, const Vector3& thickness,
   }
   polygon(corners, rgb, opacity);
   polygon(other, rgb, opacity);
+}
+
+void Solid::pane(const std::vector<std::vector<Vector3>>& curves, std::string_view css_class) {
+  std::string d;
+  Vector3 middle = Vector3::Zero();
+  double points = 0.0;
+  for (const auto& curve : curves) {
+    std::vector<Point2> projected;
+    for (const Vector3& point : curve) {
+      middle += point;
+      points += 1.0;
+      projected.push_back(project(point));
+    }
+    bool first = true;
+    for (const Point2& at : simplified(projected, 0.4)) {
+      d += fmt::format("{}{} {}", first ? "M" : "L", pixel(at.x), pixel(at.y));
+      first = false;
+    }
+    d += "Z";
+  }
+  if (points > 0.0)
+    add(depth(middle / points),
+        fmt::format("<path class=\"{}\" fill-rule=\"evenodd\" d=\"{}\"/>", css_class, d));
 }
 
 void Solid::thread(const Vector3& a, const Vector3& b, std::string_view css_class) {

@@ -28,6 +28,8 @@ class Solid {
   /// A plate between a polygon and the same polygon moved by `thickness`.
   void plate(const std::vector<Vector3>& corners, const Vector3& thickness, const Vector3& rgb,
              double opacity = 1.0);
+  /// A flat pane between closed curves of one plane, holes left out, with its edges.
+  void pane(const std::vector<std::vector<Vector3>>& curves, std::string_view css_class);
   /// A thin line of the theme's colour.
   void thread(const Vector3& a, const Vector3& b, std::string_view css_class);
   void text(const Vector3& at, std::string_view text, std::string_view anchor = "middle", double dx = 0.0,

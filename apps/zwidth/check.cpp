@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <memory>
-#include <random>
 
 #include "model.h"
 #include "verbs.h"
@@ -21,32 +20,6 @@ struct CheckArguments {
   bool json = false;
 };
 
-/// Freedoms counted at many postures of the joint ranges.
-struct MobilitySample {
-  int closed = 0;  ///< postures that close
-  int tried = 0;
-  Mobility least{};  ///< at the posture with the fewest freedoms: the others may be singular
-};
-
-MobilitySample sample_mobility(const Mechanism& mechanism) {
-  MobilitySample sample;
-  std::mt19937_64 random(1);
-  for (sample.tried = 0; sample.tried < 50; ++sample.tried) {
-    ActiveVector q(mechanism.active_count());
-    for (int i = 0; i < q.size(); ++i) {
-      const Interval range = mechanism.active_range(i);
-      // The middle first, then anywhere.
-      q[i] = sample.tried == 0 ? range.middle() : std::uniform_real_distribution(range.min, range.max)(random);
-    }
-    const Solution solution = solve_forward(mechanism, q);
-    if (!solution) continue;
-    const Mobility here = mobility(*solution.posture);
-    if (sample.closed == 0 || here.freedoms < sample.least.freedoms) sample.least = here;
-    ++sample.closed;
-  }
-  return sample;
-}
-
 Json problem_json(const Problem& problem) {
   Json entry;
   entry["file"] = problem.file;
@@ -59,16 +32,45 @@ Json problem_json(const Problem& problem) {
   return entry;
 }
 
+std::string counted(int number, const char* singular, const char* plural) {
+  return fmt::format("{} {}", number, number == 1 ? singular : plural);
+}
+
+/// What the counts come to, in a word.
+const char* verdict_of(const Mobility& mobility) {
+  if (mobility.loose > 0) return "under-constrained";
+  if (mobility.active > mobility.freedoms) return "over-actuated";
+  return mobility.redundant_equations > 0 ? "over-constrained" : "constrained";
+}
+
+/// How the freedoms were counted.
+std::string counting_text(const MobilitySample& sample) {
+  const Mobility& mobility = sample.typical;
+  std::string text =
+      fmt::format("rank of the loop closure at {}; Grübler counts {} {}",
+                  counted(sample.closed, "posture", "postures"), mobility.gruebler, in_words(mobility.group));
+  if (sample.singular > 0)
+    text +=
+        fmt::format("; {} singular with {} at the moment",
+                    sample.singular == 1 ? "one posture is" : fmt::format("{} postures are", sample.singular),
+                    sample.most_freedoms);
+  return text;
+}
+
 std::vector<std::string> warnings_of(const Model& model, const MobilitySample& sample) {
   std::vector<std::string> warnings;
-  const Mobility& mobility = sample.least;
+  const Mobility& mobility = sample.typical;
   if (sample.closed < sample.tried) {
     warnings.push_back(fmt::format("the legs close at {} of {} postures tried in the joint ranges",
                                    sample.closed, sample.tried));
   }
-  if (sample.closed > 0 && mobility.freedoms != mobility.active) {
+  if (sample.closed > 0 && mobility.redundant_equations > 0) {
     warnings.push_back(
-        fmt::format("the mechanism has {} freedoms but {} active joints", mobility.freedoms, mobility.active));
+        fmt::format("over-constrained: {} in the loops repeat{} others, so that they close only with exact "
+                    "lengths and axes; "
+                    "in a real device play or bending must give way",
+                    counted(mobility.redundant_equations, "equation", "equations"),
+                    mobility.redundant_equations == 1 ? "s" : ""));
   }
   for (int i = 0; i < model.mechanism.active_count(); ++i) {
     const std::string& name = model.mechanism.active_names()[static_cast<size_t>(i)];
@@ -120,12 +122,16 @@ int check(const CheckArguments& arguments, const Terminal& terminal) {
       entry["bodies"] = model.description.bodies.size();
       entry["drives"] = model.description.drives.size() + model.description.pneumatic_drives.size();
       Json freedom;
-      freedom["gruebler"] = sample.least.gruebler;
-      freedom["freedoms"] = sample.least.freedoms;
-      freedom["tool_freedoms"] = sample.least.tool_freedoms;
-      freedom["redundant_equations"] = sample.least.redundant_equations;
+      freedom["gruebler"] = sample.typical.gruebler;
+      freedom["freedoms"] = sample.typical.freedoms;
+      freedom["tool_freedoms"] = sample.typical.tool_freedoms;
+      freedom["redundant_equations"] = sample.typical.redundant_equations;
+      freedom["active_joints"] = sample.typical.active;
+      freedom["group"] = to_string(sample.typical.group);
+      freedom["verdict"] = verdict_of(sample.typical);
       freedom["postures_tried"] = sample.tried;
       freedom["postures_closed"] = sample.closed;
+      freedom["singular_postures"] = sample.singular;
       entry["mobility"] = freedom;
       entry["problems"] = Json::array();
       entry["warnings"] = warnings;
@@ -134,13 +140,10 @@ int check(const CheckArguments& arguments, const Terminal& terminal) {
       sheet.row("mechanism", family,
                 fmt::format("{} legs, {} joints, {} of them active", mechanism.legs().size(),
                             mechanism.joint_count(), mechanism.active_count()));
-      sheet.row("mobility", fmt::format("{} freedoms", sample.least.freedoms),
-                fmt::format(
-                    "rank of the loop closure at {} postures; Grübler counts {}{}", sample.closed,
-                    sample.least.gruebler,
-                    sample.least.redundant_equations > 0
-                        ? fmt::format(", {} closure equations repeat others", sample.least.redundant_equations)
-                        : ""));
+      sheet.row("mobility",
+                fmt::format("{}, {}", counted(sample.typical.freedoms, "freedom", "freedoms"),
+                            verdict_of(sample.typical)),
+                counting_text(sample));
       sheet.row("bodies", fmt::format("{}", model.description.bodies.size()));
       sheet.row("drives",
                 fmt::format("{}", model.description.drives.size() + model.description.pneumatic_drives.size()));

@@ -10,6 +10,7 @@
 #include "zwidth/actuation/drive_problems.h"
 #include "zwidth/description/read.h"
 #include "zwidth/mechanism/beam_link.h"
+#include "zwidth/mechanism/mechanism_problems.h"
 
 namespace zwidth {
 
@@ -41,7 +42,7 @@ const Catalogue& catalogue() {
 }
 
 Description read_device(const std::string& device, const std::vector<std::string>& overrides) {
-  static constexpr DescriptionCheck kChecks[] = {drive_problems, beam_problems};
+  static constexpr DescriptionCheck kChecks[] = {drive_problems, beam_problems, mechanism_problems};
   return read_description(device, overrides, catalogue(), kChecks);
 }
 

@@ -242,12 +242,29 @@ class Validator {
       const Dimension dimension =
           joint.type == SerialJointType::prismatic ? Dimension::length : Dimension::angle;
       range_and_home(joint.range, joint.home, dimension, key);
+      if (i > 0) check_rows(arm.joints[i - 1], joint, key);
     }
     if (!arm.joints.empty() && moving == 0)
       wrong("joint", "", "has no joint that moves", "make one revolute or prismatic");
     if (moving > kMaxLegJoints) {
       wrong("joint", fmt::format("{} joints", moving), fmt::format("must be at most {}", kMaxLegJoints), "");
     }
+  }
+
+  // The same of two rows that follow each other: z axes on one line.
+  void check_rows(const SerialJointDescription& inner, const SerialJointDescription& joint,
+                  const std::string& key) {
+    constexpr double kSame = 1e-9;
+    const bool both_slide =
+                   inner.type == SerialJointType::prismatic && joint.type == SerialJointType::prismatic,
+               both_turn = inner.type == SerialJointType::revolute && joint.type == SerialJointType::revolute;
+    if (std::abs(std::sin(inner.alpha)) > kSame || !(both_slide || (both_turn && std::abs(inner.a) <= kSame)))
+      return;
+    wrong(key, "",
+          fmt::format("{} as \"{}\" does: the link between has no length",
+                      both_slide ? "slides the same way" : "turns about the same axis", inner.name),
+          fmt::format("give \"{}\" {}, or leave one of the two out", inner.name,
+                      both_slide ? "an alpha" : "an a or an alpha"));
   }
 
   void range_and_home(const Interval& range, double home, Dimension dimension, const std::string& path) {
@@ -347,6 +364,27 @@ class Validator {
       name(joint.name, names, key + ".name", "joint");
       const Vector3& end = i + 1 < leg.joints.size() ? leg.joints[i + 1].point : leg.tip;
       check(joint, end, key);
+      if (i > 0) check_link(leg.joints[i - 1], joint, key);
+    }
+  }
+
+  // Two joints that do the same leave the link between them without a place.
+  void check_link(const JointDescription& inner, const JointDescription& joint, const std::string& key) {
+    constexpr double kSame = 1e-9;
+    if (inner.type != joint.type || joint.type == JointType::parallelogram || !inner.axis.allFinite() ||
+        !joint.axis.allFinite() || inner.axis.norm() < kSame || joint.axis.norm() < kSame)
+      return;
+    const Vector3 u = inner.axis.normalized();
+    if (u.cross(joint.axis.normalized()).norm() > kSame) return;
+    if (joint.type == JointType::prismatic) {
+      wrong(key + ".axis", "", fmt::format("is that of \"{}\", which slides the same way", inner.name),
+            "turn it, or leave one of the two out");
+    } else if (u.cross(joint.point - inner.point).norm() <= kSame) {
+      wrong(key + ".point", "",
+            fmt::format(
+                "lies on the axis of \"{}\", about which this joint turns too: the link between has no length",
+                inner.name),
+            "move it off that axis, or leave one of the two out");
     }
   }
 

@@ -53,6 +53,12 @@ class Elimination {
   /// After the last step: number of independent columns.
   int rank() const noexcept { return rank_; }
 
+  /// After the last step: the least that a column adds to those before it, over the largest column; 0 where one
+  /// depends on them, 1 if there is none.
+  double independence() const noexcept {
+    return columns_ == 0 ? 1.0 : largest_ > 0.0 ? std::sqrt(smallest_ / largest_) : 0.0;
+  }
+
   /// After the last step: finds the pseudo-inverse.
   void finish() noexcept {
     with_sizes([this](auto size, auto) {
@@ -106,6 +112,7 @@ class Elimination {
       v[i] = a_[i][c];
       norm2 += v[i] * v[i];
     }
+    smallest_ = norm2 < smallest_ ? norm2 : smallest_;
     if (k == rows_ || !(norm2 > kRankTolerance * kRankTolerance * largest_)) return;
 
     // Reflect the column onto the axis k: v = x - alpha e_k with alpha of the sign opposite to x_k.
@@ -138,6 +145,7 @@ class Elimination {
       for (int i = 0; i < size; ++i) norm2 += lanes_at(&a_[i][kLanes * g]) * lanes_at(&a_[i][kLanes * g]);
       for (int lane = 0; lane < kLanes; ++lane) largest_ = norm2[lane] > largest_ ? norm2[lane] : largest_;
     }
+    smallest_ = largest_;
   }
 
   int rows_ = 0;
@@ -145,6 +153,7 @@ class Elimination {
   int next_ = 0;
   int rank_ = 0;
   double largest_ = 0.0;                           // squared norm of the largest column
+  double smallest_ = 0.0;                          // of what a column adds to those before it
   std::array<std::array<double, 8>, kMaxRows> a_;  // what is left to take in, by rows
   std::array<std::array<double, 8>, kMaxRows> q_;  // Q^T
   std::array<std::array<double, 8>, kMaxRows> r_;  // R by rows, right of its diagonal

@@ -101,6 +101,7 @@ void forward(const Parameters& p, std::size_t n, const double* cosine, const dou
   const V zero = hn::Zero(D()), one = set(1.0);
   const V d2 = set(p.d2), d5 = set(p.d5), half = set(0.5), h = set(kHalfSqrt3);
   const double scale = p.d2 + p.d3 + std::abs(p.d5), degenerate = 1e-12 * scale * scale;
+  const double boundary = 2e-12 * p.d3 * p.d3;  // as delta_forward has it
   for (std::size_t at = 0; at < n; at += hn::Lanes(D())) {
     const std::size_t rest = n - at;
     V cos_i[3], sin_i[3], radius[3], up[3];
@@ -124,7 +125,7 @@ void forward(const Parameters& p, std::size_t n, const double* cosine, const dou
     const V sy = (hn::MulSub(nz, ux, nx * uz) * vv + hn::MulSub(vz, nx, vx * nz) * uu) * f;
     const V sz = (hn::MulSub(nx, uy, ny * ux) * vv + hn::MulSub(vx, ny, vy * nx) * uu) * f;
     const V h2 = set(p.d3 * p.d3) - dot(sx, sy, sz, sx, sy, sz);
-    const M closes = hn::And(h2 >= zero, N > set(degenerate * degenerate));
+    const M closes = hn::And(h2 >= set(-boundary), N > set(degenerate * degenerate));
     const V along = hn::CopySign(hn::Sqrt(hn::Max(h2, zero) * inverse_N), nz);
     const V px = hn::MulAdd(along, nx, sx), py = hn::MulAdd(along, ny, sy + cy[0]),
             pz = hn::MulAdd(along, nz, sz + up[0]);

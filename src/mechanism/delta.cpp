@@ -10,7 +10,7 @@ namespace zwidth {
 namespace {
 
 constexpr double kDegenerate = 1e-12;      // relative to the squared scale, for lengths that count as zero
-constexpr double kReachTolerance = 1e-12;  // relative overshoot of |c| over A that still counts as the boundary
+constexpr double kReachTolerance = 1e-12;  // relative overshoot of a length that still counts as the boundary
 constexpr double kLimitTolerance = 1e-9;   // [rad]
 constexpr double kSingular = 1e-4;         // scale-free singularity measures below this make a pose degraded
 
@@ -89,9 +89,9 @@ DeltaForward delta_forward(const DeltaGeometry& geometry, const Vector3& theta) 
   const double inverse_N = 1.0 / N;
   const Vector3 from_c1 = n.cross(u * v.squaredNorm() - v * u.squaredNorm()) * (0.5 * inverse_N);
   const double h2 = d3 * d3 - from_c1.squaredNorm();
-  if (!(h2 >= 0.0)) return result;
+  if (!(h2 >= -2.0 * kReachTolerance * d3 * d3)) return result;
   // det R = r_1.n = +-h |n|; upper assembly mode: larger z.
-  const double determinant = std::copysign(std::sqrt(h2 * N), n.z());
+  const double determinant = std::copysign(std::sqrt(h2 > 0.0 ? h2 * N : 0.0), n.z());
   const Vector3 r1 = from_c1 + n * (determinant * inverse_N);
   result.position = c[0] + r1;
 

@@ -213,7 +213,8 @@ void judge(Solution& solution, const Closure& closure) {
   if (mechanism.platform() == PlatformFreedom::point) {
     PostureBuilder::tool(posture).rotation = posture.leg_tip_rotation(0);
   }
-  solution.conditioning = std::min(closure.reciprocal_condition(), closure.drive_condition(posture));
+  solution.conditioning =
+      std::min({closure.reciprocal_condition(), closure.drive_condition(posture), closure.passive_condition()});
   solution.status = solution.conditioning < kSingular ? SolveStatus::degraded : SolveStatus::reached;
   for (int j = 0; j < mechanism.joint_count(); ++j) {
     const JointModel& joint = mechanism.joints()[j];
@@ -481,9 +482,6 @@ Solution closed_solution(const Mechanism& mechanism, const ClosedPosture& closed
     for (int i = 0; i < rows; ++i) solution.residual = std::max(solution.residual, std::abs(error[i]));
   }
   judge(solution, Closure(posture));
-  if (closed.status == SolveStatus::degraded && solution.status == SolveStatus::reached) {
-    solution.status = SolveStatus::degraded;
-  }
   return solution;
 }
 

@@ -189,8 +189,12 @@ TEST(At, SingularityThatGainsAFreedomHoldsNoForceAlongIt) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json document = outcome.json();
   EXPECT_EQ(document["status"], "degraded");
-  EXPECT_EQ(document["singularity"]["kind"], "the tool gains a freedom");
+  // Arms and forearms lie along each other, so that the tool moves neither way of the plane.
+  EXPECT_EQ(document["singularity"]["kind"], "the tool gains and loses a freedom");
   EXPECT_NEAR(std::abs(document["singularity"]["free_direction"][2].get<double>()), 1.0, 1e-9);
+  EXPECT_EQ(document["singularity"]["free_directions"].size(), 1u);
+  EXPECT_EQ(document["singularity"]["lost_directions"].size(), 2u);
+  EXPECT_EQ(document["singularity"]["lost_by"], json({"leg1", "leg2", "leg3"}));
   EXPECT_EQ(document["force_limits"]["continuous"]["every_direction"].get<double>(), 0.0);
   for (const char* key : {"jacobian", "torques", "gravity_torques", "mass_matrix", "cartesian_mass"}) {
     EXPECT_TRUE(document[key].is_null()) << key;
@@ -217,7 +221,9 @@ TEST(At, SingularityThatLosesAFreedomBearsAnyForceAlongIt) {
   const json document = outcome.json();
   EXPECT_EQ(document["status"], "degraded");
   EXPECT_EQ(document["singularity"]["kind"], "the tool loses a freedom");
-  const json& lost = document["singularity"]["weak_direction"];
+  ASSERT_EQ(document["singularity"]["lost_directions"].size(), 1u);
+  EXPECT_EQ(document["singularity"]["lost_by"], json({"leg1"}));
+  const json& lost = document["singularity"]["lost_directions"][0];
   EXPECT_NEAR(std::abs(lost[1].get<double>()), 0.28, 1e-6);
   EXPECT_NEAR(std::abs(lost[2].get<double>()), 0.96, 1e-6);
   EXPECT_EQ(document["manipulability"].get<double>(), 0.0);

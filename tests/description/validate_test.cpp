@@ -146,6 +146,35 @@ TEST(Validate, JointsHaveDirectionsAndRanges) {
   EXPECT_EQ(only_rule(device, "mechanism"), "has no active joint");
 }
 
+TEST(Validate, LinksHaveLengths) {
+  Description device = slider();
+  auto& joints = std::get<LegsDescription>(device.mechanism).legs[0].joints;
+  const Vector3 knee = joints[1].point;
+  joints[1].point = joints[0].point + 0.02 * joints[0].axis;  // along the axis is no way off it
+  EXPECT_TRUE(only_rule(device, "leg[0].joint[1].point").starts_with("lies on the axis of \"turn\""));
+  joints[1].axis = {1, 0, 0};  // a universal joint
+  EXPECT_TRUE(validate(device).empty());
+  joints[1] = joints[0];
+  joints[1].name = "knee";
+  joints[1].active = false;
+  joints[1].point = knee;
+  EXPECT_TRUE(validate(device).empty());
+  joints[0].type = joints[1].type = JointType::prismatic;
+  EXPECT_TRUE(only_rule(device, "leg[0].joint[1].axis").starts_with("is that of \"turn\""));
+}
+
+TEST(Validate, RowsOfAnArmDiffer) {
+  Description device;
+  device.name = "arm";
+  SerialDescription arm;
+  arm.joints = {{.name = "a", .d = 0.2, .range = {-1, 1}}, {.name = "b", .a = 0.1, .range = {-1, 1}}};
+  device.mechanism = arm;
+  EXPECT_TRUE(only_rule(device, "joint[1]").starts_with("turns about the same axis as \"a\""));
+  arm.joints[0].a = 0.1;
+  device.mechanism = arm;
+  EXPECT_TRUE(validate(device).empty());
+}
+
 TEST(Validate, AParallelogramHasBars) {
   Description device = slider();
   auto& joints = std::get<LegsDescription>(device.mechanism).legs[0].joints;
@@ -165,6 +194,7 @@ TEST(Validate, SizesHaveLimits) {
   for (int i = 1; i <= kMaxLegJoints; ++i) {
     JointDescription joint = leg.joints[0];
     joint.name = "j" + std::to_string(i);
+    joint.point.x() += 0.01 * i;
     joint.active = false;
     legs.legs[0].joints.push_back(joint);
   }

@@ -61,10 +61,11 @@ Json limits_entry(const Situation& at, const char* name, const ActiveVector& tor
   if (at.singularity.gains) {
     entry["axis"] = nullptr;
     entry["every_direction"] = 0.0;
-    if (at.singularity.free) entry["weakest_direction"] = json_array(*at.singularity.free);
+    const std::vector<SingularWay>& free = at.singularity.free;
+    if (!free.empty()) entry["weakest_direction"] = json_array(free.front().direction);
     answer.page().cells(label, {"none"},
-                        at.singularity.free ? fmt::format("along ({})", direction_text(*at.singularity.free))
-                                            : "along the freedom that is gained");
+                        free.empty() ? "along the freedom that is gained"
+                                     : fmt::format("along ({})", direction_text(free.front().direction)));
     return entry;
   }
   entry["axis"] = json_array(axis_force_limits(at.J, torque));

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "section.h"
 
@@ -12,6 +13,12 @@
 /// Where the joints and the tool are, and how the one moves with the others.
 
 namespace zwidth::at {
+
+namespace {
+
+constexpr double kNear = 1e-4;  // as the solvers call a posture degraded
+
+}  // namespace
 
 void write_joints(const Situation& at, Answer& answer) {
   Json names = Json::array(), values = Json::array(), passive_names = Json::array(), passive = Json::array();
@@ -144,7 +151,6 @@ void write_five_bar(const FiveBarDescription& five_bar, const Situation& at, Jso
   const WorkingMode mode = working_mode(geometry, theta, position);
   entry["working_mode"] = {mode.left, mode.right};
   entry["assembly_mode"] = assembly_mode(geometry, theta, position);
-  constexpr double kNear = 1e-4;  // as the solvers call a posture degraded
   const FiveBarSingularity named = state.singularity(kNear);
   Json names = Json::array();
   std::string text;
@@ -195,46 +201,90 @@ void write_arm(const Situation& at, Json& entry, Answer& answer) {
   answer.page().table({"singularity", "distance", "where"}, rows);
 }
 
+Json directions_json(const std::vector<SingularWay>& ways) {
+  Json list = Json::array();
+  for (const SingularWay& way : ways) list.push_back(json_array(way.direction));
+  return list;
+}
+
+/// "(1.000, 0.000, 0.000)", or several with "and" between them.
+std::string directions_text(const std::vector<SingularWay>& ways) {
+  std::string text;
+  for (const SingularWay& way : ways)
+    text += fmt::format("{}({})", text.empty() ? "" : " and ", direction_text(way.direction));
+  return text;
+}
+
+/// The legs that bar lost ways, each once.
+std::vector<std::string> barring_legs(const std::vector<SingularWay>& ways) {
+  std::vector<std::string> legs;
+  for (const SingularWay& way : ways) {
+    for (const std::string& leg : way.legs) {
+      if (std::find(legs.begin(), legs.end(), leg) == legs.end()) legs.push_back(leg);
+    }
+  }
+  return legs;
+}
+
+std::string barring_text(const Mechanism& mechanism, const std::vector<SingularWay>& ways) {
+  const std::vector<std::string> legs = barring_legs(ways);
+  if (mechanism.legs().size() == 1 || legs.empty()) return "";
+  return fmt::format(" {} {} it.", fmt::join(legs, ", "), legs.size() == 1 ? "bars" : "bar");
+}
+
+/// What the posture loses or gains, exactly or nearly, into `entry`; returned in words.
+std::string write_singular_ways(const Situation& at, Json& entry) {
+  const Singularity& found = at.singularity;
+  std::string text;
+  const auto lost = [&](const std::vector<SingularWay>& ways) {
+    entry["lost_directions"] = directions_json(ways);
+    entry["lost_by"] = barring_legs(ways);
+  };
+  if (found.gains) {
+    entry["kind"] = found.loses ? "the tool gains and loses a freedom" : "the tool gains a freedom";
+    entry["free_directions"] = directions_json(found.free);
+    if (!found.free.empty()) entry["free_direction"] = json_array(found.free.front().direction);
+    text = fmt::format(
+        "Singular: the tool can move{} although every joint is held. No force can be held along it.",
+        found.free.empty() ? "" : " along " + directions_text(found.free));
+  }
+  if (found.loses) {
+    if (!found.gains) entry["kind"] = "the tool loses a freedom";
+    entry["weak_direction"] = json_array(found.lost.front().direction);
+    lost(found.lost);
+    text += fmt::format("{}Singular: the tool cannot move along {}; the links bear any force along it.{}",
+                        text.empty() ? "" : " ", directions_text(found.lost),
+                        barring_text(at.mechanism, found.lost));
+  }
+  if (found.gains || found.loses || at.status != SolveStatus::degraded) return text;
+  const bool gains = at.rates.closure < kNear;
+  entry["kind"] = gains ? "the tool gains a freedom" : "the tool loses a freedom";
+  if (gains) {
+    entry["free_directions"] = directions_json(found.nearly);
+    return fmt::format(
+        "Near a singularity: the tool can move{} although the joints are held; forces there are hardly "
+        "controlled.",
+        found.nearly.empty() ? "" : " along " + directions_text(found.nearly));
+  }
+  if (found.hardly.empty()) return "Near a singularity: passive joints hardly know where to go.";
+  lost(found.hardly);
+  entry["weak_direction"] = json_array(found.hardly.front().direction);
+  return fmt::format("Near a singularity: the tool can hardly move along {}.{}", directions_text(found.hardly),
+                     barring_text(at.mechanism, found.hardly));
+}
+
 }  // namespace
 
 void write_singularity(const Situation& at, Answer& answer) {
   Json entry;
   entry["closure"] = json_number(at.rates.closure);
-  const bool comparable = units_of(at).homogeneous(at.J);
-  std::string text;
-  if (at.singularity.gains) {
-    entry["kind"] = "the tool gains a freedom";
-    text = "Singular: the tool can move although every joint is held";
-    if (at.singularity.free) {
-      entry["free_direction"] = json_array(*at.singularity.free);
-      text = fmt::format("Singular: the tool can move along ({}) although every joint is held",
-                         direction_text(*at.singularity.free));
-    }
-    text += ". No force can be held along it.";
-  } else if (comparable) {
+  if (!at.singularity.gains && units_of(at).homogeneous(at.J)) {
     const Dexterity figures = dexterity(at.J);
     entry["min_singular_value"] = json_number(figures.min_singular_value);
     entry["max_singular_value"] = json_number(figures.max_singular_value);
     entry["weak_direction"] = json_array(figures.weak_direction);
   }
-  if (at.singularity.loses) {
-    entry["kind"] = "the tool loses a freedom";
-    entry["weak_direction"] = json_array(at.singularity.lost);
-    text = fmt::format("Singular: the tool cannot move along ({}); the links bear any force along it.",
-                       direction_text(at.singularity.lost));
-  } else if (!at.singularity.gains && at.status == SolveStatus::degraded) {
-    const bool gains = at.rates.closure < 1e-4;
-    entry["kind"] = gains ? "the tool gains a freedom" : "the tool loses a freedom";
-    text = gains
-               ? "Near a singularity: the tool can move although the joints are held; forces there are hardly "
-                 "controlled."
-               : "Near a singularity: the tool can hardly move one way.";
-    if (!gains && at.singularity.weak.size() > 0) {
-      entry["weak_direction"] = json_array(at.singularity.weak);
-      text = fmt::format("Near a singularity: the tool can hardly move along ({}).",
-                         direction_text(at.singularity.weak));
-    }
-  }
+  const std::string text = write_singular_ways(at, entry);
   if (!text.empty()) answer.page().paragraph(text, 2, Tint::warning);
   if (const auto& geometry = at.mechanism.delta()) {
     const DeltaState state(*geometry, Vector3(at.posture.active()), at.posture.tool().position);

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "zwidth/description/problem.h"
-#include "zwidth/math/svd.h"
 
 namespace zwidth::at {
 
@@ -22,42 +21,49 @@ constexpr const char* kLoad = "give --load";
 const std::vector<std::string> kOtherKeys = {"device", "status", "frame",     "reason",
                                              "notes",  "choice", "solutions", "nearest_reachable"};
 
-/// The direction that a delta's forearms, coplanar, do not hold. Others leave it open.
-std::optional<ToolVector> free_direction(const Posture& posture, const Frame& frame) {
-  if (!posture.mechanism().delta()) return std::nullopt;
-  Matrix3 R;
-  for (int leg = 0; leg < 3; ++leg) {
-    const LegModel& model = posture.mechanism().legs()[static_cast<size_t>(leg)];
-    R.row(leg) = posture.leg_tip(leg) - posture.joint_point(model.first + 1);
+std::vector<SingularWay> ways_of(const Mechanism& mechanism, const std::vector<SingularDirection>& directions,
+                                 const Frame& frame) {
+  std::vector<SingularWay> ways;
+  for (const SingularDirection& one : directions) {
+    constexpr double kNothing = 1e-12;
+    SingularWay way{frame.turn * one.direction, {}};
+    way.direction = (way.direction.array().abs() < kNothing).select(0.0, way.direction);
+    for (const int leg : one.legs) {
+      const std::string& joint =
+          mechanism.joint_names()[static_cast<size_t>(mechanism.legs()[static_cast<size_t>(leg)].first)];
+      way.legs.push_back(joint.substr(0, joint.find('/')));
+    }
+    ways.push_back(std::move(way));
   }
-  return ToolVector(frame.R * Vector3(svd(R).v.col(2)));
+  return ways;
 }
 
-/// Looks for singularities in J, and takes from it what is only rounding.
-Singularity find_singularity(const Posture& posture, const Rates& rates, const Frame& frame, Jacobian& J) {
+/// Looks for singularities, and takes from J what is only rounding.
+Singularity find_singularity(const Posture& posture, SolveStatus status, const Rates& rates, const Frame& frame,
+                             Jacobian& J) {
+  const Mechanism& mechanism = posture.mechanism();
   Singularity result;
-  if (!(rates.closure >= kRounding) || !J.allFinite()) {
-    result.gains = true;
-    result.free = free_direction(posture, frame);
-    return result;
+  const SingularDirections exact = singular_directions(posture, kRounding);
+  result.gains = !(rates.closure >= kRounding) || !J.allFinite();
+  if (result.gains) result.free = ways_of(mechanism, exact.gained, frame);
+  result.loses = !exact.lost.empty();
+  result.lost = ways_of(mechanism, exact.lost, frame);
+  if (status == SolveStatus::degraded && !result.gains && !result.loses) {
+    constexpr double kNear = 1e-3;  // whatever makes the solvers call a posture degraded is within it
+    const SingularDirections near = singular_directions(posture, kNear);
+    result.hardly = ways_of(mechanism, near.lost, frame);
+    result.nearly = ways_of(mechanism, near.gained, frame);
   }
-  const Eigen::Index rows = J.rows(), freedoms = posture.mechanism().tool_rows();
-  if (freedoms > J.cols()) return result;  // too few joints to move every way anyhow
+  if (!result.loses || result.gains) return result;
   // Turning counts as the way of a point at the characteristic length.
-  const double length = posture.mechanism().characteristic_length();
-  const Eigen::Index turning = rows - frame.linear();
+  const double length = mechanism.characteristic_length();
+  const Eigen::Index turning = J.rows() - frame.linear();
   Jacobian scaled = J;
   scaled.bottomRows(turning) *= length;
-  auto [u, sigma, v] = svd(scaled);
-  result.weak = u.col(freedoms - 1);
-  if (sigma[freedoms - 1] > kRounding * length) return result;
-  result.loses = true;
-  result.lost = u.col(freedoms - 1);
-  for (double& value : sigma) value = value > kRounding * length ? value : 0.0;
-  J = u.leftCols(sigma.size()) * sigma.asDiagonal() * v.leftCols(sigma.size()).transpose();
-  J.bottomRows(turning) /= length;
+  for (const SingularWay& way : result.lost) scaled -= way.direction * (way.direction.transpose() * scaled);
+  scaled.bottomRows(turning) /= length;
   const double zero = 1e-12 * J.cwiseAbs().maxCoeff();
-  J = (J.array().abs() <= zero).select(0.0, J);
+  J = (scaled.array().abs() <= zero).select(0.0, scaled);
   return result;
 }
 
@@ -122,7 +128,7 @@ Situation::Situation(const Model& of, const Arguments& arguments, const Frame& u
       frame(user),
       rates(zwidth::rates(posture)),
       J(frame.turn * rates.tool),
-      singularity(find_singularity(posture, rates, frame, J)),
+      singularity(find_singularity(posture, status, rates, frame, J)),
       rate(ActiveVector::Zero(mechanism.active_count())),
       acceleration(rate),
       moving(!arguments.rate.empty() || !arguments.acceleration.empty()) {

@@ -9,6 +9,7 @@
 
 #include "zwidth/description/units.h"
 #include "zwidth/mechanism/jacobian.h"
+#include "zwidth/mechanism/singularity.h"
 
 /// `zwidth at` answers in sections. Each is a function that writes one key of the JSON document, or a few that
 /// belong together, and the lines that show them on the page. A new question is a new function and a row in the
@@ -51,16 +52,22 @@ struct Frame {
 };
 Frame frame_of(const Arguments& arguments, const Description& description, const Mechanism& mechanism);
 
+/// A way of the tool that the posture loses or gains, in the user's frame; turning counts as the way of a point
+/// at the characteristic length.
+struct SingularWay {
+  ToolVector direction;           ///< unit
+  std::vector<std::string> legs;  ///< that bar a lost one
+};
+
 /// What is wrong with a posture's Jacobian, to within rounding: values that are only what rounding leaves of
 /// zero must not be taken for figures.
 struct Singularity {
-  bool gains = false;              ///< the tool moves although every joint is held; J means nothing
-  std::optional<ToolVector> free;  ///< along this unit vector, in the user's frame, where it is known
-  bool loses = false;              ///< the tool cannot move along `lost`, whatever the joints do
-  ToolVector lost;                 ///< unit, in the user's frame
-  /// Along which the tool moves least, where `lost` does not say it; empty where J means nothing. Both have
-  /// their angular part times the characteristic length.
-  ToolVector weak;
+  bool gains = false;             ///< the tool moves although every joint is held; J means nothing
+  std::vector<SingularWay> free;  ///< along these, where the solvers see which; the freest first
+  bool loses = false;             ///< the tool cannot move along `lost`, whatever the joints do
+  std::vector<SingularWay> lost;
+  std::vector<SingularWay> hardly;  ///< of a posture near a singularity: the ways it is about to lose
+  std::vector<SingularWay> nearly;  ///< or to gain
 };
 
 /// One posture, and what the user asks of it. Tool vectors and the Jacobian are in the user's frame.

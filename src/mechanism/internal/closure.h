@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "zwidth/math/elimination.h"
@@ -60,6 +61,14 @@ class Closure {
 
   /// Reciprocal condition of K: 0 where the platform keeps a freedom with all active joints locked.
   double reciprocal_condition() const noexcept { return platform_.reciprocal_condition(); }
+
+  /// The least of the legs' independence of passive joints: 0 where those of one leg depend on each other, as
+  /// when it is stretched out, so that the leg bars the platform one way.
+  double passive_condition() const noexcept {
+    double least = 1.0;
+    for (int l = 0; l < leg_count_; ++l) least = std::min(least, legs_[l].passive.independence());
+    return least;
+  }
 
   /// Smallest singular value of H in K x = H qdot, with qdot the active rates, over the longest lever of an
   /// active joint: 0 where some of them do not move the platform, however equal the others are. REQUIRES: the

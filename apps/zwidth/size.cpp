@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "model.h"
+#include "size_balance.h"
 #include "size_pneumatic.h"
 #include "verbs.h"
 
@@ -168,6 +169,7 @@ class Answer {
     } else {
       load_cases();
     }
+    document_["balance"] = write_balance(model_, postures_, sheet_);
     margins_and_parts();
     document_["ok"] = ok_;
     sheet_.gap();

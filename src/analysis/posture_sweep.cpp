@@ -101,7 +101,8 @@ class Sweeper {
 
   void sample(std::int64_t index, Block& block) const {
     const Solution solution = solve_forward(mechanism_, spread_posture(mechanism_, index));
-    if (!solution) return;
+    // The active joints are within their ranges: a passive one may not be.
+    if (!solution || solution.status == SolveStatus::joint_limit) return;
     ++block.solved;
     const Posture& posture = *solution.posture;
     const Rates rate = rates(posture);
@@ -189,7 +190,8 @@ FarthestPosture ascend(const Mechanism& mechanism, const Value& value, const Slo
   std::vector<FarthestPosture> starts;
   const auto at = [&](const ActiveVector& q) {
     FarthestPosture result{.distance = -std::numeric_limits<double>::infinity(), .active = q};
-    if (const Solution solution = solve_forward(mechanism, q)) {
+    const Solution solution = solve_forward(mechanism, q);
+    if (solution && solution.status != SolveStatus::joint_limit) {
       result.position = solution.posture->tool().position;
       result.distance = value(result.position);
     }

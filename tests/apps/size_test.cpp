@@ -44,6 +44,68 @@ TEST(Size, MomentsAsTheyAreLetTheFourthMotorSuffice) {
   EXPECT_TRUE(demand(document, 4, "continuous")["ok"].get<bool>());
 }
 
+// Baser 2006, section 5.2: with the printed masses A = -1450 g mm and B = -600 g mm are left, and exact balance
+// wants l3 = 127.46 mm and d4 = 43.95 mm.
+TEST(Size, SaysWhatIsLeftOfTheStaticBalanceAndWhichCounterweightTakesIt) {
+  const Json balance = run({"size", "seven-dof", "--json"}).json()["balance"];
+  EXPECT_NEAR(balance["joints"][1]["moment"][2].get<double>(), -1450e-6, 1e-9);
+  EXPECT_NEAR(balance["joints"][3]["moment"][2].get<double>(), -600e-6, 1e-9);
+  for (const Json& joint : balance["joints"]) EXPECT_LE(joint["gravity"].get<double>(), 0.0205);
+  EXPECT_NEAR(balance["moving_mass"].get<double>(), 1.23, 1e-12);
+  EXPECT_LT(balance["stray"].get<double>(), 2.0 * 1.7e-3);
+  EXPECT_LE(balance["weight_at_tool"][0].get<double>(), balance["weight_at_tool"][1].get<double>());
+  const Json& counterweight = balance["counterweight"];
+  EXPECT_EQ(counterweight["body"], 4);
+  EXPECT_EQ(counterweight["turns_with"], "arm/theta4");
+  const double l3 = -counterweight["pivot"][2].get<double>(),
+               d4 = -l3 - counterweight["centre"][2].get<double>();
+  EXPECT_NEAR(l3, 0.12746, 5e-6);
+  EXPECT_NEAR(d4, 0.04395, 5e-6);
+  EXPECT_LT(counterweight["residual"].get<double>(), 1e-15);
+  const std::string page = run({"size", "seven-dof"}).out;
+  EXPECT_NE(page.find("Static balance"), std::string::npos);
+  EXPECT_NE(page.find("body[4]"), std::string::npos) << page;
+}
+
+TEST(Size, BalancesArmsOfOtherMassesAsTheOracleDoes) {
+  int compared = 0;
+  for (const Json& one : Json::parse(read_text(std::string(ZWIDTH_TEST_DATA) + "/seven-dof-drives.json"))) {
+    const bool residuals = one["quantity"] == "balance_residuals",
+               moved = one["quantity"] == "balancing_counterweight";
+    if ((!residuals && !moved) || compared >= 4) continue;
+    ++compared;
+    const auto in = [&](const char* key) { return one["inputs"][key].get<double>(); };
+    std::vector<std::string> arguments{"size", "seven-dof", "--json"};
+    const auto set = [&](const std::string& key, const std::string& value) {
+      arguments.insert(arguments.end(), {"--set", key + "=" + value});
+    };
+    const auto along = [](double z) { return "[0, 0, " + std::to_string(z) + "]"; };
+    const double l1 = in("l1_m");
+    set("joint[2].d", std::to_string(l1));
+    const char* masses[] = {"m1_kg", "m3_kg", "m4_kg", "mL_kg", "mc_kg"};
+    for (int i = 0; i < 5; ++i) set("body[" + std::to_string(i) + "].mass", std::to_string(in(masses[i])));
+    set("body[0].centre", along(in("l2_m")));
+    set("body[1].pivot", along(l1 - in("l4_m")));
+    set("body[1].centre", along(l1 - in("l4_m") - in("d2_m")));
+    set("body[2].centre", along(l1 + in("d3_m")));
+    set("body[3].centre", along(l1 + in("d1_m")));
+    set("body[4].pivot", along(-in("l3_m")));
+    set("body[4].centre", along(-in("l3_m") - in("d4_m")));
+    const Json balance = run(arguments).json()["balance"];
+    if (residuals) {
+      EXPECT_NEAR(balance["joints"][1]["moment"][2].get<double>(), one["value"][0].get<double>(), 1e-12);
+      EXPECT_NEAR(balance["joints"][3]["moment"][2].get<double>(), one["value"][1].get<double>(), 1e-12);
+    } else {
+      const Json& body = balance["counterweight"];
+      EXPECT_EQ(body["body"], 4);
+      EXPECT_NEAR(-body["pivot"][2].get<double>(), one["value"]["l3_m"].get<double>(), 1e-12);
+      EXPECT_NEAR(body["pivot"][2].get<double>() - body["centre"][2].get<double>(),
+                  one["value"]["d4_m"].get<double>(), 1e-12);
+    }
+  }
+  EXPECT_EQ(compared, 4);
+}
+
 TEST(Size, ALoadIsNamedOrGivenInNumbers) {
   const std::string joints = "0,90deg,60deg,45deg,90deg,90deg,90deg";
   const Json by_name =

@@ -39,6 +39,17 @@ double bend(const Posture& posture, int l) {
   return sine_between(elbow - posture.joint_point(crank), posture.leg_tip(l) - elbow);
 }
 
+// Of the joints that no drive moves: what follows must have room to.
+bool passive_within_ranges(const Posture& posture) {
+  const std::vector<JointModel>& joints = posture.mechanism().joints();
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (joints[j].active < 0 &&
+        !joints[j].range.contains(posture.joints()[static_cast<Eigen::Index>(j)], kLimitTolerance))
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Probe::Probe(const Mechanism& mechanism) : mechanism_(&mechanism), dimension_(tool_dimension(mechanism)) {
@@ -100,7 +111,7 @@ Probe::Answer Probe::answer_from(const Posture& posture) const {
         sine_between(posture.leg_tip(0) - posture.joint_point(1), posture.leg_tip(1) - posture.joint_point(3)));
     answer.on_branch = answer.on_branch && left * modes_[0] >= 0.0 && right * modes_[1] >= 0.0;
   }
-  answer.inside = answer.on_branch && within_ranges(answer.joints);
+  answer.inside = answer.on_branch && within_ranges(answer.joints) && passive_within_ranges(posture);
   return answer;
 }
 

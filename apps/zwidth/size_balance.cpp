@@ -1,0 +1,118 @@
+#include "size_balance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+#include "zwidth/analysis/balance.h"
+#include "zwidth/mechanism/dynamics.h"
+
+namespace zwidth {
+
+namespace {
+
+double total(const std::vector<Vector3>& moments) {
+  double sum = 0.0;
+  for (const Vector3& moment : moments) sum += moment.squaredNorm();
+  return std::sqrt(sum);
+}
+
+/// The body that, moved, leaves the least to hold.
+struct Best {
+  size_t body = 0;
+  BalancedBody balanced;
+};
+std::optional<Best> best_counterweight(const Description& description) {
+  std::optional<Best> best;
+  for (size_t i = 0; i < description.bodies.size(); ++i) {
+    const std::optional<BalancedBody> one = balanced_body(description, i);
+    if (one && (!best || total(one->residual) < total(best->balanced.residual))) best = Best{i, *one};
+  }
+  return best;
+}
+
+Json counterweight_json(const Best& best) {
+  const BodyDescription& body = best.balanced.body;
+  Json entry{{"body", best.body}, {"on", body.on}, {"mass", json_number(body.mass)}};
+  if (!body.turns_with.empty()) {
+    entry["turns_with"] = body.turns_with;
+    entry["pivot"] = json_array(body.pivot);
+  }
+  entry["centre"] = json_array(body.centre);
+  entry["residual"] = json_number(total(best.balanced.residual));
+  return entry;
+}
+
+}  // namespace
+
+Json write_balance(const Model& model, std::span<const SizingPosture> postures, Sheet& sheet) {
+  const Mechanism& mechanism = model.mechanism;
+  if (moving_mass(mechanism) == 0.0) return nullptr;
+  std::vector<Posture> all;
+  all.reserve(postures.size());
+  for (const SizingPosture& one : postures) all.push_back(one.posture);
+  const BalanceResidual residual = balance_residual(all);
+  const std::vector<Vector3> moments = first_moments(mechanism);
+  const double g = mechanism.gravity().norm();
+
+  sheet.heading("Static balance");
+  Json joints = Json::array();
+  std::vector<std::vector<std::string>> rows;
+  for (int i = 0; i < mechanism.active_count(); ++i) {
+    const std::string& name = mechanism.active_names()[static_cast<size_t>(i)];
+    Json joint{{"joint", name}, {"gravity", json_number(residual.torque[i])}};
+    std::string moment;
+    if (!moments.empty()) {
+      const Vector3& b = moments[static_cast<size_t>(mechanism.active_joint(i))];
+      joint["moment"] = json_array(b);
+      moment = number(g * b.norm() * kMilli);
+    }
+    joints.push_back(joint);
+    rows.push_back({name, number(residual.torque[i] * kMilli), moment});
+  }
+  const bool arm = !moments.empty();
+  if (!arm) {
+    for (auto& row : rows) row.pop_back();
+  }
+  sheet.table(arm ? std::vector<std::string>{"joint", "weight held, at worst mN m", "residual moment mN m"}
+                  : std::vector<std::string>{"joint", "weight held, at worst mN m"},
+              rows);
+
+  double lightest = std::numeric_limits<double>::infinity(), heaviest = -lightest;
+  for (const Posture& posture : all) {
+    const double mass = weight_at_tool(posture).mass;
+    if (!std::isfinite(mass)) continue;
+    lightest = std::min(lightest, mass);
+    heaviest = std::max(heaviest, mass);
+  }
+  sheet.row("moving mass", quantity(moving_mass(mechanism), kMilli, "g"));
+  sheet.row("mass centre strays", quantity(residual.stray, kMilli, "mm"), "from its mean over the postures");
+  sheet.row("weight at the tool", interval(lightest, heaviest, kMilli, "g"),
+            "with the drives off, as a scale shows it");
+
+  Json entry{{"joints", joints},
+             {"moving_mass", json_number(moving_mass(mechanism))},
+             {"mass_centre", json_array(residual.centre)},
+             {"stray", json_number(residual.stray)},
+             {"weight_at_tool", {json_number(lightest), json_number(heaviest)}}};
+  entry["counterweight"] = nullptr;
+  if (const std::optional<Best> best = arm ? best_counterweight(model.description) : std::nullopt) {
+    const BodyDescription &now = model.description.bodies[best->body], &then = best->balanced.body;
+    entry["counterweight"] = counterweight_json(*best);
+    const double left = g * total(best->balanced.residual);
+    std::string text = fmt::format("Nearest to balance comes body[{}], {} on {}, ", best->body,
+                                   quantity(now.mass, kMilli, "g"), now.on);
+    if (then.turns_with.empty()) {
+      text += fmt::format("with its centre at {}", point_text(then.centre));
+    } else {
+      text += fmt::format("hung at {} with its centre at {}", point_text(then.pivot), point_text(then.centre));
+    }
+    text += left < 1e-9 ? ": the joints then hold no weight."
+                        : fmt::format(": {} are left.", readable(left, "N m"));
+    sheet.paragraph(text);
+  }
+  return entry;
+}
+
+}  // namespace zwidth

@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "run_command.h"
+
+// Mistakes in mechanisms that users describe: exit 2, and the place, the value, the rule and the remedy.
+
+namespace zwidth::testing {
+namespace {
+
+// A five-bar spelled out, every value on a line of its own.
+const char* const kBars = R"([device]
+name = "bars"
+title = "Two cranks, two rods"
+
+[mechanism]
+type = "legs"
+platform = "planar-translation"
+
+[[leg]]
+name = "left"
+tip = ["220 mm", 0, 0]
+attachment = "spherical"
+[[leg.joint]]
+name = "crank"
+type = "revolute"
+active = true
+axis = [0, 0, 1]
+point = ["-30 mm", 0, 0]
+range = ["60 deg", "200 deg"]
+home = "128 deg"
+[[leg.joint]]
+name = "elbow"
+type = "revolute"
+axis = [0, 0, 1]
+point = ["70 mm", 0, 0]
+home = "-76 deg"
+
+[[leg]]
+name = "right"
+tip = ["280 mm", 0, 0]
+attachment = "spherical"
+[[leg.joint]]
+name = "crank"
+type = "revolute"
+active = true
+axis = [0, 0, 1]
+point = ["30 mm", 0, 0]
+range = ["-20 deg", "120 deg"]
+home = "52 deg"
+[[leg.joint]]
+name = "elbow"
+type = "revolute"
+axis = [0, 0, 1]
+point = ["130 mm", 0, 0]
+home = "76 deg"
+)";
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  const size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+// Every verb refuses the file, with the line of `part` and these words.
+void expect_refused(const std::string& text, const std::string& part, const std::vector<std::string>& words) {
+  const ScratchDirectory scratch;
+  const std::string file = scratch.file("bars.toml", text);
+  const auto line =
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(part)), '\n');
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"check", file},
+                                             {"at", file, "--joints", "128deg,52deg"},
+                                             {"report", file, "-o", scratch.path() / "out"}}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments[0] << ": " << outcome.err;
+    EXPECT_EQ(outcome.out, "") << arguments[0];
+    EXPECT_NE(outcome.err.find(file + ":" + std::to_string(line) + ":"), std::string::npos)
+        << "line " << line << ": " << outcome.err;
+    for (const std::string& word : words)
+      EXPECT_NE(outcome.err.find(word), std::string::npos) << word << ": " << outcome.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(scratch.path() / "out"));
+  const auto document = run({"check", file, "--json"}).json();
+  EXPECT_FALSE(document["ok"].get<bool>());
+  EXPECT_EQ(document["devices"][0]["problems"][0]["line"].get<long>(), line);
+}
+
+TEST(MechanismErrors, AreNoneInASoundFile) {
+  const ScratchDirectory scratch;
+  const std::string file = scratch.file("bars.toml", kBars);
+  const Outcome checked = run({"check", file});
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_NE(checked.out.find("2 freedoms, constrained"), std::string::npos) << checked.out;
+  EXPECT_NE(checked.out.find("in the plane"), std::string::npos) << checked.out;
+  EXPECT_EQ(run({"at", file, "--joints", "128deg,52deg"}).status, 0);
+  const auto mobility = run({"check", file, "--json"}).json()["devices"][0]["mobility"];
+  EXPECT_EQ(mobility["gruebler"], 2);
+  EXPECT_EQ(mobility["freedoms"], 2);
+  EXPECT_EQ(mobility["redundant_equations"], 0);
+  EXPECT_EQ(mobility["group"], "planar");
+  EXPECT_EQ(mobility["verdict"], "constrained");
+}
+
+TEST(MechanismErrors, AssemblyThatIsImpossible) {
+  std::string apart = with(kBars, "[\"30 mm\", 0, 0]", "[\"900 mm\", 0, 0]");
+  apart =
+      with(with(apart, "[\"130 mm\", 0, 0]", "[\"1 m\", 0, 0]"), "[\"280 mm\", 0, 0]", "[\"1.15 m\", 0, 0]");
+  expect_refused(apart, "[[leg]]\nname = \"right\"", {"leg[1]", "never closes", "lengthen the links"});
+}
+
+TEST(MechanismErrors, AHomeThatClosesNothingComesWithOneThatDoes) {
+  // One crank is 770 mm long now, which reaches, but not as home has it.
+  expect_refused(with(kBars, "[\"30 mm\", 0, 0]", "[\"900 mm\", 0, 0]"), "home = \"128 deg\"",
+                 {"leg[0].joint[0].home", "too far", "set home in every joint as here: left/crank "});
+}
+
+TEST(MechanismErrors, ALinkOfZeroLength) {
+  expect_refused(with(kBars, "[\"70 mm\", 0, 0]", "[\"-30 mm\", 0, \"5 mm\"]"),
+                 "point = [\"-30 mm\", 0, \"5 mm\"]",
+                 {"leg[0].joint[1].point", "no length", "\"crank\"", "move it off that axis"});
+}
+
+TEST(MechanismErrors, AnAxisOfZeroLength) {
+  expect_refused(with(kBars, "axis = [0, 0, 1]", "axis = [0, 0, 0]"), "axis = [0, 0, 0]",
+                 {"leg[0].joint[0].axis", "[0, 0, 0]", "must not be zero", "such as [0, 0, 1]"});
+}
+
+TEST(MechanismErrors, RangesThatExcludeEveryPosture) {
+  // Between straight and folded the rod's angle to the crank is never so small.
+  expect_refused(with(kBars, "home = \"76 deg\"", "home = \"2 deg\"\nrange = [\"1 deg\", \"3 deg\"]"),
+                 "range = [\"1 deg\"", {"leg[1].joint[1].range", "excludes every posture", "widen the range"});
+}
+
+TEST(MechanismErrors, ARotationThatIsNone) {
+  expect_refused(with(kBars, "attachment = \"spherical\"",
+                      "attachment = \"spherical\"\nplatform_rotation = [[1, 0, 0], [0, 1, 0.1], [0, 0, 1]]"),
+                 "platform_rotation",
+                 {"leg[0].platform_rotation", "must be a rotation", "orthonormal", "three unit rows"});
+}
+
+TEST(MechanismErrors, TooFewActiveJoints) {
+  expect_refused(with(kBars, "active = true\n", ""), "[[leg.joint]]\nname = \"crank\"",
+                 {"leg[0].joint[0]", "under-constrained", "2 freedoms and 1 active joint", "active = true"});
+}
+
+TEST(MechanismErrors, TooManyActiveJoints) {
+  expect_refused(
+      with(kBars, "home = \"76 deg\"", "active = true\nrange = [\"0 deg\", \"170 deg\"]\nhome = \"76 deg\""),
+      "active = true\nrange = [\"0 deg\"",
+      {"leg[1].joint[1].active", "over-actuated", "2 freedoms and 3 active joints", "leave active out"});
+}
+
+TEST(MechanismErrors, ALoadOfTheWrongDimension) {
+  const ScratchDirectory scratch;
+  const std::string file = scratch.file("bars.toml", kBars);
+  for (const std::string load : {"1,2,3", "1,2,3,4,5,6", "1", "0,0,5"}) {
+    const Outcome outcome = run({"at", file, "--joints", "128deg,52deg", "--load", load});
+    EXPECT_EQ(outcome.status, 2) << load;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find("--load \"" + load), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("2"), std::string::npos) << outcome.err;
+  }
+  EXPECT_EQ(run({"at", file, "--joints", "128deg,52deg", "--load", "1,2"}).status, 0);
+}
+
+TEST(MechanismErrors, ALoadInTheFileOfTheWrongDimension) {
+  expect_refused(
+      std::string(kBars) + "\n[[load]]\nname = \"push\"\nforce = [0, \"5 N\", 0]\nmoment = [0, 0, \"1 N m\"]\n",
+      "moment = [0, 0, \"1 N m\"]", {"load[0].moment", "does not turn", "leave it out"});
+  expect_refused(std::string(kBars) + "\n[[load]]\nname = \"push\"\nforce = [0, \"5 N\"]\n",
+                 "force = [0, \"5 N\"]", {"load[0].force"});
+}
+
+}  // namespace
+}  // namespace zwidth::testing

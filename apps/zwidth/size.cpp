@@ -122,7 +122,7 @@ LoadDescription parsed_load(const SizeArguments& arguments, const Description& d
   load.name = text;
   load.force = Vector3(values[0], values[1], values[2]);
   if (commas == 5) load.moment = Vector3(values[3], values[4], values[5]);
-  if (!load.moment.isZero(0.0) && !mechanism.tool_turns()) {
+  if (commas == 5 && !mechanism.tool_turns()) {
     throw InputError(
         fmt::format("--load \"{}\": the tool of {} does not turn, so it takes no moment; give three "
                     "numbers",

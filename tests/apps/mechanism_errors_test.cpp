@@ -102,6 +102,20 @@ TEST(MechanismErrors, AreNoneInASoundFile) {
   EXPECT_EQ(mobility["verdict"], "constrained");
 }
 
+TEST(MechanismErrors, OverConstrainedIsAWarning) {
+  // As a mechanism in space, each leg says again that the tool stays in the plane.
+  const ScratchDirectory scratch;
+  const std::string file = scratch.file("bars.toml", with(kBars, "planar-translation", "translation"));
+  const Outcome outcome = run({"check", file, "--json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const auto device = outcome.json()["devices"][0];
+  EXPECT_EQ(device["mobility"]["verdict"], "over-constrained");
+  EXPECT_EQ(device["mobility"]["redundant_equations"], 1);
+  EXPECT_NE(device["warnings"].dump().find("over-constrained: 1 equation in the loops repeats others"),
+            std::string::npos)
+      << device["warnings"];
+}
+
 TEST(MechanismErrors, AssemblyThatIsImpossible) {
   std::string apart = with(kBars, "[\"30 mm\", 0, 0]", "[\"900 mm\", 0, 0]");
   apart =

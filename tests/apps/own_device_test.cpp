@@ -69,5 +69,35 @@ TEST(OwnDevice, IsSized) {
   EXPECT_NEAR(sized["balance"]["moving_mass"].get<double>(), 0.315, 1e-12);
 }
 
+// Rates of the struts by hand, u . v + (p x u) . w for a platform that moves with v and turns with w: the
+// Jacobian's inverse.
+TEST(OwnDevice, AHexapodMovesAndTurnsAsItsStrutsSay) {
+  const std::string hexapod = ZWIDTH_EXAMPLES "/devices/hexapod.toml";
+  const Json checked = run({"check", hexapod, "--json"}).json()["devices"][0];
+  EXPECT_EQ(checked["mobility"]["freedoms"], 6);
+  EXPECT_EQ(checked["mobility"]["gruebler"], 6);
+  EXPECT_EQ(checked["mobility"]["verdict"], "constrained");
+  const Json home = run({"at", hexapod, "--joints", "0,0,0,0,0,0", "--json"}).json();
+  ASSERT_EQ(home["status"], "reached");
+  const double degree = 0.017453292519943295;
+  const std::vector<double> base{-12, 12, 108, 132, 228, 252}, top{-48, 48, 72, 168, 192, 288};
+  for (size_t k = 0; k < 6; ++k) {
+    const double px = 0.06 * std::cos(top[k] * degree), py = 0.06 * std::sin(top[k] * degree);
+    double ux = px - 0.15 * std::cos(base[k] * degree), uy = py - 0.15 * std::sin(base[k] * degree), uz = 0.2;
+    const double length = std::sqrt(ux * ux + uy * uy + uz * uz);
+    ux /= length, uy /= length, uz /= length;
+    const std::vector<double> row{ux, uy, uz, py * uz, -px * uz, px * uy - py * ux};
+    for (size_t j = 0; j < 6; ++j) {
+      double product = 0.0;
+      for (size_t i = 0; i < 6; ++i) product += row[i] * home["jacobian"][i][j].get<double>();
+      EXPECT_NEAR(product, k == j ? 1.0 : 0.0, 1e-4) << k << ", " << j;  // the file has micrometres
+    }
+  }
+  const ScratchDirectory scratch;
+  const Outcome report = run({"report", hexapod, "-o", scratch.path().string(), "--json"});
+  ASSERT_EQ(report.status, 0) << report.err;
+  EXPECT_GT(report.json()["arm"]["postures"].get<int>(), 1000);
+}
+
 }  // namespace
 }  // namespace zwidth::testing

@@ -15,7 +15,9 @@ void write_gravity(const Situation& at, Answer& answer) {
   const ActiveVector gravity = gravity_torques(at.posture, at.rates);
   answer.put("gravity_torques", json_array(gravity));
   answer.columns(at.mechanism.active_names());
-  answer.cells("torque against gravity [mN m]", gravity, kMilli);
+  const JointUnits units = joint_units(at.mechanism);
+  answer.cells(fmt::format("{} against gravity [{}]", units.effort_name, units.effort), gravity,
+               units.effort_factor);
 }
 
 void write_torques(const Situation& at, Answer& answer) {
@@ -27,8 +29,9 @@ void write_torques(const Situation& at, Answer& answer) {
   answer.put("torques", json_array(torques));
   if (!at.load && !at.moving) return;  // those against gravity
   answer.columns(at.mechanism.active_names());
-  answer.cells(at.load ? "torque with load [mN m]" : "torque in motion [mN m]", torques, kMilli,
-               at.load ? "the load is what the device exerts on the hand" : "");
+  const JointUnits units = joint_units(at.mechanism);
+  answer.cells(fmt::format("{} {} [{}]", units.effort_name, at.load ? "with load" : "in motion", units.effort),
+               torques, units.effort_factor, at.load ? "the load is what the device exerts on the hand" : "");
   if (!at.model.driven()) return;
   const ActiveVector share = torques.cwiseAbs().cwiseQuotient(at.model.continuous_torque());
   answer.cells("of the continuous limit [%]", share, 100.0, share.maxCoeff() <= 1.0 ? "" : "too much to hold",
@@ -97,8 +100,11 @@ void write_pneumatic_limits(const Situation& at, Answer& answer) {
   const TorqueRange range =
       torque_range(at.model.drives, at.model.pneumatic_drives, at.posture.active(), false);
   answer.columns(at.mechanism.active_names());
-  answer.cells("torque limit, positive [mN m]", range.max, kMilli);
-  answer.cells("torque limit, negative [mN m]", range.min, kMilli);
+  const JointUnits units = joint_units(at.mechanism);
+  answer.cells(fmt::format("{} limit, positive [{}]", units.effort_name, units.effort), range.max,
+               units.effort_factor);
+  answer.cells(fmt::format("{} limit, negative [{}]", units.effort_name, units.effort), range.min,
+               units.effort_factor);
   Json entry = at.singularity.gains ? Json() : limits_entry(at, "continuous", either_way(range), answer);
   entry["torque_range"] = {json_array(range.min), json_array(range.max)};
   Json along = Json::array();
@@ -125,8 +131,9 @@ void write_force_limits(const Situation& at, Answer& answer) {
   }
   const ActiveVector continuous = at.model.continuous_torque(), peak = at.model.peak_torque();
   answer.columns(at.mechanism.active_names());
-  answer.cells("continuous limit [mN m]", continuous, kMilli);
-  answer.cells("peak limit [mN m]", peak, kMilli);
+  const JointUnits units = joint_units(at.mechanism);
+  answer.cells(fmt::format("continuous limit [{}]", units.effort), continuous, units.effort_factor);
+  answer.cells(fmt::format("peak limit [{}]", units.effort), peak, units.effort_factor);
   Json limits;
   limits["continuous"] = limits_entry(at, "continuous", continuous, answer);
   limits["peak"] = limits_entry(at, "peak", peak, answer);

@@ -1,6 +1,7 @@
 #include "zwidth/analysis/inertia.h"
 
 #include <cmath>
+#include <fmt/format.h>
 
 #include "section.h"
 
@@ -15,9 +16,10 @@ namespace zwidth::at {
 
 namespace {
 
-void show_matrix(const char* label, const ActiveMatrix& M, const char* note, Answer& answer) {
+void show_matrix(std::string_view label, const ActiveMatrix& M, double factor, const char* note,
+                 Answer& answer) {
   for (Eigen::Index i = 0; i < M.rows(); ++i)
-    answer.cells(i == 0 ? label : "", M.row(i).transpose(), 1e7, i == 0 ? note : "");
+    answer.cells(i == 0 ? label : "", M.row(i).transpose(), factor, i == 0 ? note : "");
 }
 
 }  // namespace
@@ -26,7 +28,8 @@ void write_mass_matrix(const Situation& at, Answer& answer) {
   const ActiveMatrix M = mass_matrix(at.posture, at.rates);
   answer.put("mass_matrix", json_array(M));
   answer.columns(at.mechanism.active_names());
-  show_matrix("mass matrix [g cm²]", M, "", answer);
+  const JointUnits units = joint_units(at.mechanism);
+  show_matrix(fmt::format("mass matrix [{}]", units.inertia), M, units.inertia_factor, "", answer);
 }
 
 void write_point_mass(const Situation& at, Answer& answer) {
@@ -38,7 +41,8 @@ void write_point_mass(const Situation& at, Answer& answer) {
   const Matrix3 M = DeltaPointMassDynamics(*geometry, masses).mass_matrix(state);
   answer.put("mass_matrix_point_mass", json_array(M));
   answer.columns(at.mechanism.active_names());
-  show_matrix("  with forearms as points", M, "Neal 2015, appendix B", answer);
+  show_matrix("  with forearms as points", M, joint_units(at.mechanism).inertia_factor, "Neal 2015, appendix B",
+              answer);
 }
 
 void write_cartesian_mass(const Situation& at, Answer& answer) {

@@ -90,6 +90,7 @@ void write_jacobian(const Situation& at, Answer& answer) {
   const unsigned sliding = units_of(at).sliding_joints;
   const unsigned all = (1U << at.mechanism.active_count()) - 1U;
   const char* unit = sliding == 0 ? "[mm/rad]" : sliding == all ? "[mm/mm]" : "[mm/rad, 1]";
+  const char* turning_unit = sliding == 0 ? "[rad/rad]" : sliding == all ? "[rad/m]" : "[1, rad/m]";
   for (Eigen::Index r = 0; r < at.J.rows(); ++r) {
     const bool turns = r >= at.frame.linear();
     // Sliding joints: metres per metre are shown as they are.
@@ -98,7 +99,7 @@ void write_jacobian(const Situation& at, Answer& answer) {
       if (!turns && (sliding >> j & 1U) == 0) row[j] *= kMilli;
     }
     std::string label = r == 0 ? "Jacobian" : "";
-    if (r == 0 || r == at.frame.linear()) label += fmt::format(" {}", turns ? "[rad/rad]" : unit);
+    if (r == 0 || r == at.frame.linear()) label += fmt::format(" {}", turns ? turning_unit : unit);
     answer.cells(label, row, 1.0, "d" + names[static_cast<size_t>(r)]);
   }
 }

@@ -285,6 +285,15 @@ bool slides(const Mechanism& mechanism, int joint) {
   return mechanism.joints()[static_cast<size_t>(joint)].type == JointType::prismatic;
 }
 
+JointUnits joint_units(const Mechanism& mechanism) {
+  int sliding = 0;
+  for (int i = 0; i < mechanism.active_count(); ++i)
+    sliding += slides(mechanism, mechanism.active_joint(i)) ? 1 : 0;
+  if (sliding == 0) return {"torque", "mN m", kMilli, "g cm²", 1e7};
+  if (sliding == mechanism.active_count()) return {"force", "N", 1.0, "g", kMilli};
+  return {"torque", "N m, N", 1.0, "kg m², kg", 1.0};
+}
+
 std::string joint_text(const Mechanism& mechanism, int joint, double value) {
   if (std::abs(value) < 1e-12) value = 0.0;  // rounding errors are no angles
   return slides(mechanism, joint) ? quantity(value, kMilli, "mm", 5)

@@ -175,6 +175,16 @@ void write_natural_frequencies(const Situation&, Answer&);
 /// "10.000°" or "1.2345 mm".
 std::string joint_text(const Mechanism& mechanism, int joint, double value);
 bool slides(const Mechanism& mechanism, int joint);
+/// What efforts and inertias of the active joints are shown in: joints that turn, joints that slide, or some of
+/// both.
+struct JointUnits {
+  const char* effort_name;  ///< "torque"
+  const char* effort;       ///< "mN m"
+  double effort_factor;     ///< from SI
+  const char* inertia;
+  double inertia_factor;
+};
+JointUnits joint_units(const Mechanism& mechanism);
 /// "0.577, 0.577, 0.577".
 std::string direction_text(const ToolVector& direction);
 

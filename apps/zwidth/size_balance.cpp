@@ -18,16 +18,25 @@ double total(const std::vector<Vector3>& moments) {
   return std::sqrt(sum);
 }
 
-/// The body that, moved, leaves the least to hold.
+/// The body that, moved, leaves the least to hold; of several that leave as little, the one that moves least.
 struct Best {
   size_t body = 0;
   BalancedBody balanced;
+  double residual = 0.0;  // [kg m]
+  double way = 0.0;       // that it moves [m]
 };
-std::optional<Best> best_counterweight(const Description& description) {
+std::optional<Best> best_counterweight(const Description& description, const std::vector<Vector3>& moments) {
+  const double nothing = 1e-12 * (1.0 + total(moments));
   std::optional<Best> best;
   for (size_t i = 0; i < description.bodies.size(); ++i) {
-    const std::optional<BalancedBody> one = balanced_body(description, i);
-    if (one && (!best || total(one->residual) < total(best->balanced.residual))) best = Best{i, *one};
+    const std::optional<BalancedBody> moved = balanced_body(description, i);
+    if (!moved) continue;
+    const BodyDescription& now = description.bodies[i];
+    const Best one{i, *moved, total(moved->residual),
+                   (moved->body.centre - now.centre).norm() + (moved->body.pivot - now.pivot).norm()};
+    const bool better = !best || one.residual < best->residual - nothing ||
+                        (one.residual < best->residual + nothing && one.way < best->way);
+    if (better) best = one;
   }
   return best;
 }
@@ -40,7 +49,7 @@ Json counterweight_json(const Best& best) {
     entry["pivot"] = json_array(body.pivot);
   }
   entry["centre"] = json_array(body.centre);
-  entry["residual"] = json_number(total(best.balanced.residual));
+  entry["residual"] = json_number(best.residual);
   return entry;
 }
 
@@ -97,10 +106,10 @@ Json write_balance(const Model& model, std::span<const SizingPosture> postures, 
              {"stray", json_number(residual.stray)},
              {"weight_at_tool", {json_number(lightest), json_number(heaviest)}}};
   entry["counterweight"] = nullptr;
-  if (const std::optional<Best> best = arm ? best_counterweight(model.description) : std::nullopt) {
+  if (const std::optional<Best> best = arm ? best_counterweight(model.description, moments) : std::nullopt) {
     const BodyDescription &now = model.description.bodies[best->body], &then = best->balanced.body;
     entry["counterweight"] = counterweight_json(*best);
-    const double left = g * total(best->balanced.residual);
+    const double left = g * best->residual;
     std::string text = fmt::format("Nearest to balance comes body[{}], {} on {}, ", best->body,
                                    quantity(now.mass, kMilli, "g"), now.on);
     if (then.turns_with.empty()) {

@@ -40,10 +40,17 @@ double value(const Svd& svd, Eigen::Index i) {
   return i < svd.singularValues().size() ? svd.singularValues()[i] : 0.0;
 }
 
+// How far the tool goes along its way i for joints that go a unit, relative to the easiest way, or to what a
+// lever would give where all are hard.
+double ease(const Svd& motions, Eigen::Index i, const Mechanism& mechanism) {
+  constexpr double kLever = 0.2;  // of the longest link
+  return value(motions, i) / std::max(value(motions, 0), kLever * mechanism.characteristic_length());
+}
+
 // How many ways of the tool are worth counting.
-Eigen::Index ways(const Svd& motions, double tolerance) {
+Eigen::Index ways(const Svd& motions, const Mechanism& mechanism, double tolerance) {
   Eigen::Index count = 0;
-  while (count < motions.matrixU().rows() && value(motions, count) > tolerance * value(motions, 0)) ++count;
+  while (count < motions.matrixU().rows() && ease(motions, count, mechanism) > tolerance) ++count;
   return count;
 }
 
@@ -111,17 +118,17 @@ SingularDirections singular_directions(const Posture& posture, double tolerance)
 
   const Svd motions = tool_motions(posture);
   const Eigen::Index rows = motions.matrixU().rows();
-  const Eigen::Index rank = ways(motions, tolerance);
+  const Eigen::Index rank = ways(motions, mechanism, tolerance);
   if (rank < rows) {
     constexpr int kOthers = 6;
     constexpr double kOwn = 1e-7;
     const MobilitySample sample = sample_mobility(mechanism, kOthers);
-    const Eigen::Index has = sample.posture.empty() ? rows : ways(tool_motions(sample.posture[0]), kOwn);
+    const Eigen::Index has =
+        sample.posture.empty() ? rows : ways(tool_motions(sample.posture[0]), mechanism, kOwn);
     const Eigen::Index freedoms = std::min(rows, has);
     if (freedoms == rows) {
       for (Eigen::Index i = rows - 1; i >= rank; --i)
-        result.lost.push_back(
-            {motions.matrixU().col(i), value(motions, i) / std::max(value(motions, 0), 1e-300)});
+        result.lost.push_back({motions.matrixU().col(i), ease(motions, i, mechanism)});
     } else if (rank < freedoms) {
       for (const ToolVector& way : missing(posture, motions, rank, freedoms)) result.lost.push_back({way, 0.0});
     }

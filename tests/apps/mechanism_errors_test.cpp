@@ -82,7 +82,7 @@ void expect_refused(const std::string& text, const std::string& part, const std:
   }
   EXPECT_FALSE(std::filesystem::exists(scratch.path() / "out"));
   const auto document = run({"check", file, "--json"}).json();
-  EXPECT_FALSE(document["ok"].get<bool>());
+  ASSERT_FALSE(document["ok"].get<bool>());
   EXPECT_EQ(document["devices"][0]["problems"][0]["line"].get<long>(), line);
 }
 
@@ -141,9 +141,20 @@ TEST(MechanismErrors, AnAxisOfZeroLength) {
 }
 
 TEST(MechanismErrors, RangesThatExcludeEveryPosture) {
-  // Between straight and folded the rod's angle to the crank is never so small.
-  expect_refused(with(kBars, "home = \"76 deg\"", "home = \"2 deg\"\nrange = [\"1 deg\", \"3 deg\"]"),
-                 "range = [\"1 deg\"", {"leg[1].joint[1].range", "excludes every posture", "widen the range"});
+  // Both legs nearly straight, 250 mm long, and the left one turned away from the right one.
+  std::string straight = with(kBars, "home = \"-76 deg\"", "home = \"0 deg\"\nrange = [\"-2 deg\", \"2 deg\"]");
+  straight = with(straight, "home = \"76 deg\"", "home = \"0 deg\"\nrange = [\"-2 deg\", \"2 deg\"]");
+  straight = with(straight, "[\"60 deg\", \"200 deg\"]", "[\"120 deg\", \"200 deg\"]");
+  const ScratchDirectory scratch;
+  const std::string file = scratch.file("bars.toml", straight);
+  for (const char* verb : {"check", "report"}) {
+    const Outcome outcome = run({verb, file});
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    for (const char* word :
+         {"bars.toml:", ".range = [", "excludes every posture", "the loops close with", "widen the range"})
+      EXPECT_NE(outcome.err.find(word), std::string::npos) << word << ": " << outcome.err;
+  }
 }
 
 TEST(MechanismErrors, ARotationThatIsNone) {

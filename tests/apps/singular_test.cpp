@@ -51,7 +51,7 @@ const std::vector<Place> kPlaces = {
      {"--joints", "0,60deg,0,90deg,90deg,0,90deg"},
      1,
      0},
-    {"the first pneumatic arm stretched", {"pneumatic-1"}, {"--joints", "50mm,0,0.03553135"}, 1, 0}};
+    {"the first pneumatic arm stretched", {"pneumatic-1"}, {"--joints", "50mm,0,0.03553056960858745"}, 1, 0}};
 
 void expect_numbers(const Json& value, const std::string& path) {
   if (value.is_object() || value.is_array()) {

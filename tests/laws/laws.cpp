@@ -397,7 +397,7 @@ void borders_are_finite(const Mechanism& mechanism, const Solution& start, bool 
                              {.start = &last, .closed_form = closed_form, .restart = false});
       },
       0.1);
-  const Pose from = start.posture->tool();
+  const Pose& from = start.posture->tool();
   ToolVector way(mechanism.tool_rows());
   for (double& component : way) component = uniform(random, -1.0, 1.0);
   const Vector6 twist = mechanism.six_components(way);

@@ -177,7 +177,7 @@ void write_five_bar(const FiveBarDescription& five_bar, const Situation& at, Jso
 void write_arm(const Situation& at, Json& entry, Answer& answer) {
   const std::vector<SrsSingularity> sets = arm_singularities(at.posture);
   if (sets.empty()) return;
-  constexpr double kNear = 1e-3;  // [rad]
+  constexpr double kClose = 1e-3;  // [rad]
   const auto nearest = std::min_element(sets.begin(), sets.end(),
                                         [](const auto& a, const auto& b) { return a.distance < b.distance; });
   const bool singular = at.singularity.loses || at.status == SolveStatus::degraded;
@@ -190,7 +190,7 @@ void write_arm(const Situation& at, Json& entry, Answer& answer) {
                     {"distance", json_number(set->distance)}});
     rows.push_back({std::string(set->name), fmt::format("{}°", number(set->distance * kDegrees, 4)),
                     std::string(set->where)});
-    if (set->distance >= kNear && !(singular && set == nearest)) continue;
+    if (set->distance >= kClose && !(singular && set == nearest)) continue;
     names.push_back(set->name);
     answer.page().paragraph(
         fmt::format("{} the {} singularity: {} ({}). The links then carry {} without any torque.",

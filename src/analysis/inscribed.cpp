@@ -20,8 +20,9 @@ namespace {
 
 using internal::Probe;
 
-constexpr int kMaxContacts = 14;
-constexpr double kSafety = 1e-8;  // relative; keeps the answer inside in spite of the last digits
+constexpr std::size_t kMaxContacts = 14;
+constexpr std::size_t kMaxRays = 64;  // enough for all faces of a cube
+constexpr double kSafety = 1e-8;      // relative; keeps the answer inside in spite of the last digits
 
 struct Shape {
   bool cube = false;
@@ -114,7 +115,7 @@ class Inflation {
     }
     std::ranges::sort(rays, {}, &Contact::t);
     for (const Contact& ray : rays) {
-      if (ray.t > nearest + margin || found.size() >= 2 * kMaxContacts) break;
+      if (ray.t > nearest + margin || found.size() >= kMaxRays) break;
       // One contact for every neighbourhood, the one that leaves first.
       const auto covers = [&](const Contact& other) {
         return other.t <= ray.t && (other.u - ray.u).norm() < 0.35;
@@ -129,9 +130,11 @@ class Inflation {
       if (contact.t > nearest + margin || distinct.size() >= kMaxContacts) break;
       if (std::ranges::any_of(distinct, [&](const Contact& d) { return (d.u - contact.u).norm() < 1e-3; }))
         continue;
-      distinct.push_back(contact);
-      const Vector3 n = normal(c, contact);
-      distinct.back().slope = -n / n.dot(contact.u);
+      const Vector3 n = normal(c, contact), slope = -n / n.dot(contact.u);
+      // Many rays meet a flat side of the workspace that the cube lies against; the first of them says all.
+      if (std::ranges::any_of(distinct, [&](const Contact& d) { return (d.slope - slope).norm() < 1e-6; }))
+        continue;
+      distinct.push_back({contact.u, contact.t, slope});
     }
     return distinct;
   }

@@ -115,5 +115,23 @@ TEST(Inscribed, ThinWorkspaceOfAnArm) {
   EXPECT_NEAR(2.0 * shapes.sphere.size, outer - inner, 1e-6);
 }
 
+// The workspace of an R-CUBE is a cube itself, which lies against all its sides at once; its legs alone do not
+// know that.
+TEST(Inscribed, CubeOfAnRCubeByItsLegs) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const RCubeDescription d{.drive_link = 0.08,
+                           .inner_link = 0.12,
+                           .outer_link = 0.12,
+                           .base_offset = 0.1,
+                           .joint_range = {-40.0 * kDegree, 40.0 * kDegree},
+                           .source = "test"};
+  Description description;
+  description.mechanism = legs_of(d);
+  const InscribedShapes shapes = inscribed_shapes(Mechanism(description));
+  const double edge = 2.0 * d.drive_link * std::sin(40.0 * kDegree);
+  EXPECT_NEAR(shapes.cube.size, edge, 1e-6 * edge);
+  EXPECT_NEAR(2.0 * shapes.sphere.size, edge, 1e-6 * edge);
+}
+
 }  // namespace
 }  // namespace zwidth

@@ -10,8 +10,8 @@ namespace {
 
 TEST(Command, HelpOfEveryVerbHasExamples) {
   EXPECT_NE(run({"--help"}).out.find("Examples"), std::string::npos);
-  for (const char* verb :
-       {"report", "at", "workspace", "size", "synthesise", "reproduce", "show", "export", "check", "devices", "parts"}) {
+  for (const char* verb : {"report", "at", "workspace", "size", "synthesise", "reproduce", "show", "export",
+                           "check", "devices", "parts"}) {
     const Outcome outcome = run({verb, "--help"});
     EXPECT_EQ(outcome.status, 0) << verb;
     EXPECT_NE(outcome.out.find("zwidth " + std::string(verb)), std::string::npos) << verb;

@@ -49,11 +49,12 @@ std::string counting_text(const MobilitySample& sample) {
   std::string text =
       fmt::format("rank of the loop closure at {}; Grübler counts {} {}",
                   counted(sample.closed, "posture", "postures"), mobility.gruebler, in_words(mobility.group));
-  if (sample.singular > 0)
+  if (sample.singular > 0) {
     text +=
         fmt::format("; {} singular with {} at the moment",
                     sample.singular == 1 ? "one posture is" : fmt::format("{} postures are", sample.singular),
                     sample.most_freedoms);
+  }
   return text;
 }
 

@@ -366,7 +366,7 @@ SheetFigure view(const WorkspaceSheet& workspace, int normal) {
   Plot plot(kWidth, kWidth,
             {fmt::format("{} [mm]", axis_name(slice.u)), millimetres(workspace.extents.range[u], 0.06)},
             {fmt::format("{} [mm]", axis_name(slice.v)), millimetres(workspace.extents.range[v], 0.06)});
-  plot.keep_shape();
+  plot.keep_shape(false);
   const auto flat = [&](const Vector3& p) { return Point2{p[slice.u] * kMilli, p[slice.v] * kMilli}; };
   std::vector<std::array<Point2, 3>> triangles;
   for (const auto& t : workspace.surface.triangles) {

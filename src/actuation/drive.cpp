@@ -311,9 +311,10 @@ std::vector<Margin> Drive::margins() const {
   const Amplifier& amplifier = description_.amplifier;
   std::vector<Margin> margins;
   add_margin(margins, "continuous current", motor.nominal_current, amplifier.continuous_current, "A",
-             "the amplifier must hold the motor's nominal current");
+             "the amplifier must hold the nominal current of the motor's catalogue, which overcomes its own "
+             "friction too");
   add_margin(margins, "peak current", motor.nominal_torque * description_.peak_factor / motor.torque_constant,
-             amplifier.max_current, "A", "the amplifier must give the current of the peak torque");
+             amplifier.max_current, "A", "the amplifier must give the peak torque over the torque constant");
   if (thermal_) {
     add_margin(
         margins, "winding heat", motor.nominal_torque / motor.torque_constant, thermal_->continuous_current(),

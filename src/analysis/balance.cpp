@@ -50,7 +50,7 @@ std::vector<Vector3> own_moments(const Mechanism& mechanism) {
   }
   double outside = at_tip;
   for (int j = n - 1; j >= 0; --j) {
-    const Vector3& arm = j + 1 < n ? mechanism.joints()[static_cast<std::size_t>(j + 1)].offset : leg.tip;
+    const Vector3& arm = j + 1 < n ? mechanism.joints()[static_cast<std::size_t>(j) + 1].offset : leg.tip;
     moments[static_cast<std::size_t>(j)] += outside * arm;
     outside += carried[static_cast<std::size_t>(j)];
   }

@@ -67,10 +67,11 @@ CharacteristicLength characteristic_length(std::span<const Jacobian> jacobians, 
   constexpr int kRaster = 120;
   const double step = 2.0 * kDecades * std::log(10.0) / kRaster;
   const auto at = [&](double log_length) { return mean_conditioning(jacobians, units, std::exp(log_length)); };
+  const int centre = kRaster / 2;
   int best = 0;
   double best_value = -1.0;
   for (int k = 0; k <= kRaster; ++k) {
-    const double value = at(middle + step * (k - kRaster / 2));
+    const double value = at(middle + step * (k - centre));
     if (value > best_value) {
       best_value = value;
       best = k;
@@ -78,7 +79,7 @@ CharacteristicLength characteristic_length(std::span<const Jacobian> jacobians, 
   }
   if (!(best_value > 0.0)) return result_at(1.0);
   // Golden section within the neighbours.
-  double low = middle + step * (best - 1 - kRaster / 2), high = low + 2.0 * step;
+  double low = middle + step * (best - 1 - centre), high = low + 2.0 * step;
   constexpr double kGolden = 0.61803398874989485;
   double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
   double at_left = at(left), at_right = at(right);

@@ -176,6 +176,11 @@ toml::table parse_value(const std::string& text) {
   return toml::table{{"value", text}};
 }
 
+[[noreturn]] void refuse_length(std::string_view file) {
+  refuse(file, fmt::format("is longer than {} KiB", kLargestFile / 1024),
+         "a description has a few pages: check that this is the file you mean");
+}
+
 }  // namespace
 
 std::string_view kind_of(const toml::node& node) {
@@ -225,28 +230,31 @@ std::string read_text(const std::string& path) {
     text = read_all(in);
     if (in.bad()) refuse(file, "cannot be read to its end", "check the disk");
   }
-  if (text.size() > kLargestFile) {
-    refuse(file, fmt::format("is longer than {} KiB", kLargestFile / 1024), "a description has a few pages");
-  }
+  if (text.size() > kLargestFile) refuse_length(file);
   return text;
 }
 
 Input::Input(std::string_view text, std::string_view file) : file_(file) {
-  if (text.size() > kLargestFile) {
-    refuse(file, fmt::format("is longer than {} KiB", kLargestFile / 1024), "a description has a few pages");
-  }
+  if (text.size() > kLargestFile) refuse_length(file);
   DepthCheck(text, file).run();
   try {
     root_ = toml::parse(text);
   } catch (const toml::parse_error& error) {
     const toml::source_position& at = error.source().begin;
     constexpr std::size_t kLongest = 160;
-    std::string rule = "is not TOML: " + std::string(error.description().substr(0, kLongest));
+    const std::string_view what = error.description().substr(0, kLongest);
+    std::string rule = fmt::format("is not TOML: {}", what);
+    std::string advice = "mend this line first; what is wrong elsewhere shows when the file can be read";
+    if (what.find("utf-8") != what.npos) {
+      advice = "save the file as UTF-8";
+    } else if (what.find("end-of-file") != what.npos) {
+      advice = "the file seems to be cut off here: is it complete?";
+    }
     throw DescriptionError({{.file = file_,
                              .line = static_cast<int>(at.line),
                              .column = static_cast<int>(at.column),
                              .rule = std::move(rule),
-                             .advice = "see docs/device_file.md for the format"}});
+                             .advice = std::move(advice)}});
   }
 }
 
@@ -265,6 +273,15 @@ void Input::set(const std::string& override_text) {
   if (parts.empty()) {
     wrong("is no key", "write a dotted path, such as mechanism.forearm or drive[0].motor");
     return;
+  }
+  if (parts.size() == 1 && !root_.contains(key)) {
+    for (const auto& [name, node] : root_) {
+      const toml::table* table = node.as_table();
+      if (table == nullptr || !table->contains(key)) continue;
+      wrong("is not at the top of the file",
+            fmt::format("did you mean {}?", join_path(std::string(name.str()), key)));
+      return;
+    }
   }
   const toml::table value = parse_value(override_text.substr(equals + 1));
   set_in(root_, parts, 0, "", *value.get("value"), label);

@@ -24,9 +24,10 @@ Description parse_description(std::string_view text, std::string_view file,
   Input input(text, file);
   for (const std::string& override_text : overrides) input.set(override_text);
   Description description = read_device_tables(input, catalogue);
-  const bool mechanism_read = !input.faulty("mechanism") && !input.faulty("leg");
+  // Links are named by the family, or by the legs and joints that are spelled out, whatever their lengths.
+  const bool names_known = !input.faulty("mechanism.type") && !input.faulty("leg") && !input.faulty("joint");
   input.add_value_problems(value_problems(description));
-  if (mechanism_read) input.add_value_problems(name_problems(description));
+  if (names_known) input.add_value_problems(name_problems(description));
   input.throw_problems();
   for (const DescriptionCheck check : checks) input.add_value_problems(check(description));
   input.throw_problems();

@@ -132,7 +132,13 @@ class Validator {
   }
 
   void device() {
-    if (d_.name.empty()) wrong("device.name", "", "must not be empty", "give the device a short name");
+    const auto unfit = [](unsigned char c) { return c < ' ' || c == 0x7f || c == '/' || c == '\\'; };
+    if (d_.name.empty()) {
+      wrong("device.name", "", "must not be empty", "give the device a short name");
+    } else if (d_.name.front() == '.' || std::any_of(d_.name.begin(), d_.name.end(), unfit)) {
+      wrong("device.name", quoted(d_.name), "must be fit for the name of a folder",
+            "leave out slashes, control characters and a dot in front");
+    }
     finite(d_.gravity, "device.gravity");
     rotation(d_.to_user, "device.to_user",
              "give three unit rows at right angles: the user's x, y and z axes in base coordinates");

@@ -1,16 +1,12 @@
 #include "zwidth/description/values.h"
 
+#include "zwidth/description/catalogue.h"
 #include "zwidth/description/internal/schema.h"
 #include "zwidth/description/names.h"
+#include "zwidth/description/overload.h"
 
 namespace zwidth {
-
 namespace {
-
-template <class... Functions>
-struct Overload : Functions... {
-  using Functions::operator()...;
-};
 
 class Collector {
  public:
@@ -49,6 +45,20 @@ class Collector {
         "lowest and highest value of " + joint.name, source, joint.sources);
   }
 
+  // What no source gives of a part stands behind the figures as much as what no source gives of the device.
+  template <class Part>
+  void add_chosen(const std::string& table, const Part& part) {
+    for (const PartValue& value : part_values(part)) {
+      if (!zwidth::given(value.value) || !value.source.starts_with("chosen")) continue;
+      list_.push_back({join_path(table, part_kind<Part>()),
+                       value.key,
+                       {value.value},
+                       value.dimension,
+                       value.meaning + " of " + part.info.name,
+                       value.source});
+    }
+  }
+
   void add(const std::string& table, const std::string& key, std::vector<double> values, Dimension dimension,
            const std::string& meaning, const std::string& source, const Sources& own) {
     const auto found = own.find(key);
@@ -68,6 +78,10 @@ class Collector {
 
 std::vector<DescribedValue> described_values(const Description& description) {
   Collector collector(description);
+  const Matrix3& R = description.to_user;
+  collector.add(
+      "device", "to_user", {R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)},
+      Dimension::number, "turns base coordinates into the user's, row by row", {}, description.sources);
   std::visit(Overload{[&](const SerialDescription& arm) {
                         for (std::size_t i = 0; i < arm.joints.size(); ++i) {
                           collector.add_serial_joint(join_path("joint", i), arm.joints[i], arm);
@@ -102,7 +116,18 @@ std::vector<DescribedValue> described_values(const Description& description) {
             collector.add_fields(join_path(table, "transmission"), transmission, drive.source);
         },
         drive.transmission);
-    if (drive.preloader) collector.add_fields(join_path(table, "preloader"), *drive.preloader, drive.source);
+    collector.add_chosen(table, drive.motor);
+    collector.add_chosen(table, drive.encoder);
+    collector.add_chosen(table, drive.amplifier);
+    if (const auto* capstan = std::get_if<CapstanDescription>(&drive.transmission)) {
+      collector.add_chosen(join_path(table, "transmission"), capstan->cable);
+    } else if (const auto* gear = std::get_if<GearheadDescription>(&drive.transmission)) {
+      collector.add_chosen(join_path(table, "transmission"), gear->gearhead);
+    }
+    if (drive.preloader) {
+      collector.add_fields(join_path(table, "preloader"), *drive.preloader, drive.source);
+      collector.add_chosen(join_path(table, "preloader"), drive.preloader->material);
+    }
     if (drive.output) collector.add_fields(join_path(table, "output"), *drive.output, drive.source);
   }
   for (std::size_t i = 0; i < description.pneumatic_drives.size(); ++i) {

@@ -24,7 +24,8 @@ struct DescribedValue {
 };
 
 /// Every quantity of mechanism (a delta's; the joints of a spelled-out mechanism are geometry, not parameters),
-/// bodies, drives and loads, in the order of the file. Values of parts are left out: `part_values` lists those.
+/// bodies, drives and loads, in the order of the file, and of the parts of electric drives what was chosen;
+/// `part_values` lists all of a part.
 std::vector<DescribedValue> described_values(const Description& description);
 
 }  // namespace zwidth

@@ -39,7 +39,7 @@ class SmallQr {
 
   /// Factors what `at` wrote, in place.
   void factor() noexcept {
-    with_sizes([this](auto rows, auto width) { factor_sizes(rows, width); });
+    with_sizes([this](auto rows, auto width) { this->factor_sizes(rows, width); });
   }
 
   /// Rank found.

@@ -1,18 +1,11 @@
 #include "zwidth/mechanism/families.h"
 
+#include "zwidth/description/overload.h"
 #include "zwidth/mechanism/delta.h"
 #include "zwidth/mechanism/posture.h"
 #include "zwidth/mechanism/r_cube.h"
 
 namespace zwidth {
-namespace {
-
-template <class... Functions>
-struct Overload : Functions... {
-  using Functions::operator()...;
-};
-
-}  // namespace
 
 bool ClosedForm::covers(const SolveOptions& options) const noexcept {
   return options.match == Match::pose;

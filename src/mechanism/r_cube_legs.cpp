@@ -28,8 +28,9 @@ RCubeSolution home_posture(const RCubeGeometry& geometry, const Interval& range,
   }
   const int n = 12;
   for (int cell = 0; cell < n * n * n; ++cell) {
-    const Vector3 theta(at((2.0 * (cell % n) + 1.0) / n - 1.0), at((2.0 * (cell / n % n) + 1.0) / n - 1.0),
-                        at((2.0 * (cell / n / n) + 1.0) / n - 1.0));
+    const int i = cell % n, j = cell / n % n, k = cell / n / n;
+    const Vector3 theta(at((2.0 * i + 1.0) / n - 1.0), at((2.0 * j + 1.0) / n - 1.0),
+                        at((2.0 * k + 1.0) / n - 1.0));
     const RCubeSolution solution = r_cube_forward(geometry, theta, branches);
     if (solution.status == SolveStatus::reached) return solution;
   }

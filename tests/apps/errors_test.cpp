@@ -22,6 +22,10 @@ void expect_refused(const std::vector<std::string>& arguments, int status,
 TEST(Errors, UnknownVerbSuggestsTheNearest) {
   expect_refused({"repot", "delta"}, 2, {"unknown verb", "repot", "report"});
 }
+TEST(Errors, HelpOfNoVerb) {
+  EXPECT_EQ(run({"help", "at"}).out, run({"at", "--help"}).out);
+  expect_refused({"help", "repot"}, 2, {"unknown verb", "repot", "report"});
+}
 TEST(Errors, UnknownOptionSuggestsTheNearest) {
   expect_refused({"at", "delta", "--joint", "0,0,0"}, 2, {"--joint", "--joints"});
 }

@@ -106,6 +106,19 @@ TEST_F(Report, EveryFigureIsThereAndNotTrivial) {
   EXPECT_GT(count(map, "<path fill=\"#"), 8u);
 }
 
+// The sphere in a view of the workspace is a circle: the view is to scale.
+TEST_F(Report, ViewsAreToScale) {
+  for (const char* id : {"view-xy", "view-xz", "view-yz"}) {
+    const std::string figure = read_text(scratch_->path() / "out/figures" / (std::string(id) + ".svg"));
+    const auto half_axis = [&](const std::string& name) {
+      const size_t at = figure.find(name, figure.find("<ellipse"));
+      EXPECT_NE(at, std::string::npos) << id;
+      return std::stod(figure.substr(at + name.size()));
+    };
+    EXPECT_NEAR(half_axis(" rx=\""), half_axis(" ry=\""), 0.11) << id;  // both rounded to a tenth of a pixel
+  }
+}
+
 TEST_F(Report, ContentsLinkToSectionsThatExist) {
   const std::string start = "href=\"#";
   size_t links = 0;

@@ -163,13 +163,13 @@ TEST(Read, AllMistakesComeAtOnceInTheOrderOfTheFile) {
   std::string text = with(delta_text(), "upper_arm = \"80 mm\"", "upper_arm = 0");
   text = with(text, "wraps = 3", "wraps = \"3 turn\"");
   text = with(text, "mass = \"60 g\"", "mass = []");
+  text = with(text, "on = \"platform\"", "on = \"platfrom\"");
   text = with(text, "title =", "titel =");
   const std::vector<Problem> problems = problems_of(text);
-  ASSERT_EQ(problems.size(), 4U);
-  EXPECT_EQ(problems[0].key, "device.titel");
-  EXPECT_EQ(problems[1].key, "mechanism.upper_arm");
-  EXPECT_EQ(problems[2].key, "body[0].mass");
-  EXPECT_EQ(problems[3].key, "drive[0].transmission.wraps");
+  std::vector<std::string> keys;
+  for (const Problem& problem : problems) keys.push_back(problem.key);
+  EXPECT_EQ(keys, (std::vector<std::string>{"device.titel", "mechanism.upper_arm", "body[0].mass", "body[2].on",
+                                            "drive[0].transmission.wraps"}));
 }
 
 TEST(Read, MissingKeysArePlacedAtTheirTable) {
@@ -206,9 +206,11 @@ TEST(Read, TextThatIsNoTomlIsPlaced) {
   const Problem problem = problem_of("[device]\nname = \"a\nb\"");
   EXPECT_TRUE(problem.rule.starts_with("is not TOML")) << problem.rule;
   EXPECT_EQ(problem.line, 2);
+  EXPECT_EQ(problem_of("[device]\nname =").advice, "the file seems to be cut off here: is it complete?");
 }
 
 TEST(Read, BytesThatAreNoUtf8AreRefused) {
+  EXPECT_EQ(problem_of("[device]\nname = \"\xff\xfe\"\n").advice, "save the file as UTF-8");
   EXPECT_TRUE(problem_of("[device]\nname = \"\xff\xfe\"\n").rule.starts_with("is not TOML"));
   EXPECT_FALSE(problems_of(std::string("[device]\0name=1", 15)).empty());
   EXPECT_FALSE(problems_of(std::string(1000, '\0')).empty());
@@ -336,6 +338,7 @@ TEST(Overrides, AreCheckedAndPlacedAsSuch) {
 TEST(Overrides, ThatAreNoneAreExplained) {
   EXPECT_EQ(problem_of(delta_text(), {"mechanism.forearm"}).rule, "has no value");
   EXPECT_EQ(problem_of(delta_text(), {"=3"}).rule, "is no key");
+  EXPECT_EQ(problem_of(delta_text(), {"forearm=0.17"}).advice, "did you mean mechanism.forearm?");
   EXPECT_EQ(problem_of(delta_text(), {"a..b=3"}).rule, "is no key");
   EXPECT_EQ(problem_of(delta_text(), {"drive[0=3"}).rule, "is no key");
   EXPECT_EQ(problem_of(delta_text(), {"drive[7].wraps=3"}).rule, "has no element 7");

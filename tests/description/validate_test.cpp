@@ -104,6 +104,16 @@ TEST(Validate, ADeltaIsRefusedExactlyIfNoPostureCloses) {
   EXPECT_LT(refused, 1900);
 }
 
+TEST(Validate, TheNameOfADeviceIsFitForAFolder) {
+  Description device = delta();
+  device.name = "delta-2 (of 2006), größer";
+  EXPECT_TRUE(validate(device).empty());
+  for (const char* name : {"../delta", "a/b", "..", ".delta", "red\x1b[31m", "a\nb", "a\\b"}) {
+    device.name = name;
+    EXPECT_EQ(only_rule(device, "device.name"), "must be fit for the name of a folder") << name;
+  }
+}
+
 TEST(Validate, ToUserMustTurn) {
   Description device = delta();
   device.to_user = -Matrix3::Identity();

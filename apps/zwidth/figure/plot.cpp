@@ -15,6 +15,8 @@ namespace {
 
 constexpr double kLeft = 58.0;
 constexpr double kTop = 14.0;
+constexpr double kRight = 14.0;
+constexpr double kScale = 66.0;  // margin at the right that holds a scale of colours
 constexpr double kBottom = 46.0;
 constexpr int kBands = 14;
 
@@ -31,6 +33,10 @@ std::string tick_text(double value, double step) {
 
 }  // namespace
 
+double Plot::right_margin() const {
+  return scale_.empty() ? kRight : kScale;
+}
+
 double Plot::px(double x) const {
   const Interval& range = x_.range;
   const double share = x_.logarithmic ? std::log(x / range.min) / std::log(range.max / range.min)
@@ -45,8 +51,8 @@ double Plot::py(double y) const {
   return height_ - kBottom - share * (height_ - kTop - kBottom);
 }
 
-void Plot::keep_shape() {
-  const double per_unit = (width_ - kLeft - 66.0) / x_.range.width();
+void Plot::keep_shape(bool with_scale) {
+  const double per_unit = (width_ - kLeft - (with_scale ? kScale : kRight)) / x_.range.width();
   height_ = kTop + kBottom + per_unit * y_.range.width();
 }
 

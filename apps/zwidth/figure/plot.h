@@ -24,9 +24,9 @@ class Plot {
   Plot(double width, double height, Axis x, Axis y)
       : width_(width), height_(height), x_(std::move(x)), y_(std::move(y)) {}
 
-  /// One unit takes the same length along both axes; the plot's height follows. Call it before anything is
-  /// drawn.
-  void keep_shape();
+  /// One unit takes the same length along both axes; the plot's height follows. `with_scale`: colours will be
+  /// explained at the right. Call it before anything is drawn.
+  void keep_shape(bool with_scale = true);
   void line(const std::vector<Point2>& points, int series, std::string_view label = {}, bool dashed = false);
   /// Holds each value until the next.
   void steps(const std::vector<Point2>& points, int series, std::string_view label = {});
@@ -60,7 +60,7 @@ class Plot {
   double py(double y) const;
   std::string path(const std::vector<Point2>& points) const;
   std::string regions(const Field& field, double threshold) const;
-  double right_margin() const { return scale_.empty() ? 14.0 : 66.0; }
+  double right_margin() const;
 
   double width_;
   double height_;

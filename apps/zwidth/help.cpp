@@ -45,20 +45,37 @@ std::string HelpFormatter::make_description(const CLI::App* app) const {
 
 std::string HelpFormatter::make_footer(const CLI::App* app) const {
   std::istringstream lines(app->get_footer());
-  std::string text;
+  std::string text, prose;
+  const auto end_prose = [&] {
+    if (prose.empty()) return;
+    for (const std::string& part : wrapped(prose, width_)) text += part + "\n";
+    prose.clear();
+  };
   for (std::string line; std::getline(lines, line);) {
+    if (!line.empty() && !line.starts_with("  ")) {
+      prose += (prose.empty() ? "" : " ") + line;
+      if (line.ends_with('.') || line.ends_with(':')) end_prose();
+      continue;
+    }
+    end_prose();
     if (columns(line) <= width_) {
       text += line + "\n";
       continue;
     }
-    // "  an example      what it does": the explanation moves below; other lines are prose.
+    // "  an example      what it does": the explanation moves below, as does the rest of a long example.
     const size_t gap = line.find("  ", 2);
-    const bool example = line.starts_with("  ") && gap != std::string::npos;
-    const std::string rest = example ? line.substr(line.find_first_not_of(' ', gap)) : line;
-    if (example) text += line.substr(0, gap) + "\n";
-    for (const std::string& part : wrapped(rest, example ? width_ - 6 : width_))
-      text += (example ? "      " : "") + part + "\n";
+    std::string rest = line.substr(2);
+    if (gap != std::string::npos) {
+      text += line.substr(0, gap) + "\n";
+      rest = line.substr(line.find_first_not_of(' ', gap));
+    }
+    bool first = gap == std::string::npos;
+    for (const std::string& part : wrapped(rest, width_ - 6)) {
+      text += (first ? "  " : "      ") + part + "\n";
+      first = false;
+    }
   }
+  end_prose();
   return text;
 }
 

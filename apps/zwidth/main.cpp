@@ -79,7 +79,8 @@ int run(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words.front() == "help") {
     words.erase(words.begin());
-    words.emplace_back("--help");
+    // What is no verb is left to be refused.
+    if (words.empty() || app.get_subcommand_no_throw(words.front()) != nullptr) words.emplace_back("--help");
   }
   std::reverse(words.begin(), words.end());  // as CLI11 takes them
   try {

@@ -16,6 +16,8 @@ namespace zwidth {
 
 namespace {
 
+constexpr int kLabel = 32;  // columns for the label in front of cells
+
 double now() {
   using namespace std::chrono;
   return duration<double>(steady_clock::now().time_since_epoch()).count();
@@ -168,8 +170,16 @@ void Sheet::row(std::string_view label, std::string_view value, std::string_view
 }
 
 void Sheet::cells(std::string_view label, const std::vector<std::string>& cells, std::string_view note) {
-  std::string line = "  " + std::string(label) + spaces(32 - width_of(label));
-  for (const std::string& cell : cells) line += spaces(std::max(1, 11 - width_of(cell))) + cell;
+  std::string line = "  " + std::string(label) + spaces(kLabel - width_of(label));
+  for (const std::string& cell : cells) {
+    const std::string padded = spaces(std::max(1, 11 - width_of(cell))) + cell;
+    // More cells than fit, those of seven joints, say, go on below, as the names of their columns do.
+    if (width_of(line) > kLabel + 2 && width_of(line) + width_of(padded) > terminal_.width) {
+      text_ += line + "\n";
+      line = spaces(kLabel + 2);
+    }
+    line += padded;
+  }
   const int left = terminal_.width - width_of(line) - 2;
   if (!note.empty() && width_of(note) <= left) line += "  " + tinted(terminal_, Tint::dim, note);
   text_ += line + "\n";

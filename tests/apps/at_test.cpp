@@ -1,3 +1,4 @@
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -345,9 +346,13 @@ home = "20 deg"
 }
 
 TEST(At, TextFitsTheWidthItIsGiven) {
-  for (const int width : {80, 120}) {
-    const Outcome outcome = run({"at", "delta", "--joints", "10deg,20deg,30deg"},
-                                {.environment = {"COLUMNS=" + std::to_string(width)}});
+  const std::vector<std::vector<std::string>> questions = {
+      {"at", "delta", "--joints", "10deg,20deg,30deg"},
+      {"at", "seven-dof", "--joints", "10deg,50deg,20deg,80deg,30deg,70deg,20deg"},
+      {"at", "--help"}};
+  for (size_t i = 0; i < 2 * questions.size(); ++i) {
+    const int width = i % 2 == 0 ? 80 : 120;
+    const Outcome outcome = run(questions[i / 2], {.environment = {"COLUMNS=" + std::to_string(width)}});
     std::istringstream lines(outcome.out);
     for (std::string line; std::getline(lines, line);) {
       const auto starts = std::count_if(line.begin(), line.end(),
@@ -356,6 +361,40 @@ TEST(At, TextFitsTheWidthItIsGiven) {
     }
     EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos) << "no colours into a file";
   }
+}
+
+TEST(At, EllipsesFollowFromTheJacobian) {
+  const json bar = run({"at", "five-bar", "--joints", "130deg,50deg", "--json"}).json();
+  const json moves = bar["velocity_ellipsoid"]["translation"]["half_axes"];
+  const json pushes = bar["force_ellipsoid"]["force"]["half_axes"];
+  ASSERT_EQ(moves.size(), 2u);
+  EXPECT_NEAR(moves[0].get<double>() * moves[1].get<double>() / bar["manipulability"].get<double>(), 1.0,
+              1e-12);
+  EXPECT_NEAR(moves[0].get<double>() / moves[1].get<double>() / bar["condition_number"].get<double>(), 1.0,
+              1e-12);
+  // Both drives are alike: where the tool is fast it is weak.
+  const double torque = bar["force_limits"]["continuous"]["torque"][0];
+  for (size_t i = 0; i < 2; ++i)
+    EXPECT_NEAR(moves[i].get<double>() * pushes[1 - i].get<double>() / torque, 1.0, 1e-12);
+}
+
+TEST(At, TheHomogeneousConditionNumberIsTheLeast) {
+  const json arm =
+      run({"at", "seven-dof", "--joints", "10deg,50deg,20deg,80deg,30deg,70deg,20deg", "--json"}).json();
+  const json rows = arm["jacobian"];
+  const auto condition = [&](double length) {
+    Eigen::MatrixXd J(6, 7);
+    for (int r = 0; r < 6; ++r) {
+      for (int c = 0; c < 7; ++c) J(r, c) = rows[r][c].get<double>() * (r < 3 ? 1.0 : length);
+    }
+    const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(J).singularValues();
+    return sigma[0] / sigma[5];
+  };
+  const double length = arm["homogeneous"]["length"], least = arm["homogeneous"]["condition_number"];
+  EXPECT_NEAR(condition(length) / least, 1.0, 1e-9);
+  EXPECT_GT(condition(1.01 * length), least);
+  EXPECT_GT(condition(0.99 * length), least);
+  EXPECT_TRUE(arm["condition_number"].is_null());
 }
 
 // Görgülü 2018, table 7.8, as the device's file has it: spec values of the stated design, moduli by the mean of

@@ -71,18 +71,6 @@ void write_orientation(const Situation& at, Answer& answer) {
     answer.cells(r == 0 ? "axes of the tool" : "", R.row(r).transpose(), 1.0, r == 0 ? "in columns" : "");
 }
 
-namespace {
-
-JacobianUnits units_of(const Situation& at) {
-  JacobianUnits units{.linear_rows = at.frame.linear()};
-  for (int i = 0; i < at.mechanism.active_count(); ++i) {
-    if (slides(at.mechanism, at.mechanism.active_joint(i))) units.sliding_joints |= 1U << i;
-  }
-  return units;
-}
-
-}  // namespace
-
 void write_jacobian(const Situation& at, Answer& answer) {
   answer.put("jacobian", json_array(at.J));
   answer.columns(at.mechanism.active_names());
@@ -102,41 +90,6 @@ void write_jacobian(const Situation& at, Answer& answer) {
     if (r == 0 || r == at.frame.linear()) label += fmt::format(" {}", turns ? turning_unit : unit);
     answer.cells(label, row, 1.0, "d" + names[static_cast<size_t>(r)]);
   }
-}
-
-void write_dexterity(const Situation& at, Answer& answer) {
-  const JacobianUnits units = units_of(at);
-  if (!units.homogeneous(at.J)) {
-    const std::string reason = "not defined: metres and radians cannot be compared";
-    answer.undefined("condition_number", reason);
-    answer.undefined("manipulability", reason);
-    if (answer.wants("condition_number"))
-      answer.page().row("condition number", "not defined", "metres and radians cannot be compared");
-    return;
-  }
-  const Dexterity figures = dexterity(at.J);
-  if (at.singularity.loses) {
-    answer.undefined("condition_number", "infinite: the Jacobian is singular here");
-  } else {
-    answer.put("condition_number", json_number(figures.condition_number));
-  }
-  const double manipulability = at.singularity.loses ? 0.0 : figures.manipulability;
-  answer.put("manipulability", json_number(manipulability));
-  if (answer.wants("condition_number")) {
-    if (at.singularity.loses) {
-      answer.page().cells("condition number", {"infinite"}, "1 is best");
-    } else {
-      answer.cell("condition number", figures.condition_number, "1 is best");
-    }
-  }
-  if (!answer.wants("manipulability")) return;
-  const int linear = at.frame.linear();
-  const bool metres = linear > 0 && units.sliding_joints == 0;
-  const std::string unit = !metres       ? ""
-                           : linear == 3 ? " [cm³/rad³]"
-                           : linear == 2 ? " [cm²/rad²]"
-                                         : " [cm/rad]";
-  answer.cell("manipulability" + unit, manipulability * (metres ? std::pow(100.0, linear) : 1.0), "√ det J Jᵀ");
 }
 
 namespace {

@@ -7,6 +7,7 @@
 #include "context.h"
 #include "model.h"
 
+#include "zwidth/analysis/dexterity.h"
 #include "zwidth/description/units.h"
 #include "zwidth/mechanism/jacobian.h"
 #include "zwidth/mechanism/singularity.h"
@@ -152,9 +153,11 @@ void write_tool_axes(const Situation&, Answer&);
 void write_position(const Situation&, Answer&);
 void write_orientation(const Situation&, Answer&);
 void write_jacobian(const Situation&, Answer&);
-void write_dexterity(const Situation&, Answer&);
 void write_singularity(const Situation&, Answer&);
 void write_motion(const Situation&, Answer&);
+// dexterity.cpp
+void write_dexterity(const Situation&, Answer&);
+void write_ellipsoids(const Situation&, Answer&);
 // forces.cpp
 void write_gravity(const Situation&, Answer&);
 void write_torques(const Situation&, Answer&);
@@ -175,6 +178,8 @@ void write_natural_frequencies(const Situation&, Answer&);
 /// "10.000°" or "1.2345 mm".
 std::string joint_text(const Mechanism& mechanism, int joint, double value);
 bool slides(const Mechanism& mechanism, int joint);
+/// What the rows and columns of the Jacobian are measured in.
+JacobianUnits units_of(const Situation& at);
 /// What efforts and inertias of the active joints are shown in: joints that turn, joints that slide, or some of
 /// both.
 struct JointUnits {

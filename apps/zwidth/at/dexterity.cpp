@@ -1,0 +1,146 @@
+#include "zwidth/analysis/dexterity.h"
+
+#include <bit>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "section.h"
+
+#include "zwidth/analysis/force.h"
+
+/// How evenly the tool moves and pushes.
+
+namespace zwidth::at {
+
+JacobianUnits units_of(const Situation& at) {
+  JacobianUnits units{.linear_rows = at.frame.linear()};
+  for (int i = 0; i < at.mechanism.active_count(); ++i) {
+    if (slides(at.mechanism, at.mechanism.active_joint(i))) units.sliding_joints |= 1U << i;
+  }
+  return units;
+}
+
+namespace {
+
+/// Translations and rotations by themselves, and both together with a radian as a length.
+void write_mixed(const Situation& at, const JacobianUnits& units, Answer& answer) {
+  const std::string reason = "metres and radians cannot be compared: see homogeneous";
+  answer.undefined("condition_number", reason);
+  answer.undefined("manipulability", reason);
+  const bool shown = answer.wants("condition_number") || answer.wants("homogeneous");
+  if (at.singularity.loses) {
+    answer.undefined("homogeneous", "the Jacobian is singular here");
+    if (shown) answer.page().cells("condition number", {"infinite"}, "1 is best");
+    return;
+  }
+  const CharacteristicLength best = characteristic_length(at.J, units);
+  Json entry;
+  entry["length"] = json_number(best.length);
+  entry["condition_number"] = json_number(best.condition_number);
+  entry["isotropy"] = json_number(isotropy(homogeneous(at.J, units, best.length)));
+  const auto of_one_kind = [&](const char* key, const Jacobian& rows) {
+    const Dexterity figures = dexterity(rows);
+    entry[key] = {{"condition_number", json_number(figures.condition_number)},
+                  {"isotropy", json_number(isotropy(rows))}};
+    if (shown) answer.cell(fmt::format("condition number, {}", key), figures.condition_number, "1 is best");
+  };
+  const int linear = at.frame.linear();
+  if (units.sliding_joints == 0 && linear > 0 && linear < at.J.rows()) {
+    of_one_kind("translation", at.J.topRows(linear));
+    of_one_kind("rotation", at.J.bottomRows(at.J.rows() - linear));
+  }
+  answer.put("homogeneous", entry);
+  if (shown)
+    answer.cell("condition number, both", best.condition_number,
+                fmt::format("a radian as {} mm: least so", number(best.length * 1e3)));
+}
+
+Json ellipsoid_entry(const Ellipsoid& ellipsoid) {
+  Json directions = Json::array();
+  for (Eigen::Index i = 0; i < ellipsoid.axes.cols(); ++i)
+    directions.push_back(json_array(ellipsoid.axes.col(i)));
+  return {{"half_axes", json_array(ellipsoid.lengths)}, {"directions", directions}};
+}
+
+/// "201.6 × 27.12 mm/s", the longest first.
+std::string half_axes(const Ellipsoid& ellipsoid, double factor, const char* unit) {
+  std::string text;
+  for (const double length : ellipsoid.lengths) {
+    text += fmt::format("{}{}", text.empty() ? "" : " × ",
+                        std::isfinite(length) ? number(length * factor) : std::string("unlimited"));
+  }
+  return fmt::format("{} {}", text, unit);
+}
+
+}  // namespace
+
+void write_dexterity(const Situation& at, Answer& answer) {
+  const JacobianUnits units = units_of(at);
+  if (!units.homogeneous(at.J)) {
+    write_mixed(at, units, answer);
+    return;
+  }
+  const Dexterity figures = dexterity(at.J);
+  if (at.singularity.loses) {
+    answer.undefined("condition_number", "infinite: the Jacobian is singular here");
+  } else {
+    answer.put("condition_number", json_number(figures.condition_number));
+  }
+  answer.put("isotropy", at.singularity.loses ? 0.0 : json_number(isotropy(at.J)));
+  const double manipulability = at.singularity.loses ? 0.0 : figures.manipulability;
+  answer.put("manipulability", json_number(manipulability));
+  if (answer.wants("condition_number")) {
+    if (at.singularity.loses) {
+      answer.page().cells("condition number", {"infinite"}, "1 is best");
+    } else {
+      answer.cell("condition number", figures.condition_number, "1 is best");
+    }
+  }
+  if (!answer.wants("manipulability")) return;
+  const int linear = at.frame.linear();
+  const bool metres = linear > 0 && units.sliding_joints == 0;
+  const std::string unit = !metres       ? ""
+                           : linear == 3 ? " [cm³/rad³]"
+                           : linear == 2 ? " [cm²/rad²]"
+                                         : " [cm/rad]";
+  answer.cell("manipulability" + unit, manipulability * (metres ? std::pow(100.0, linear) : 1.0), "√ det J Jᵀ");
+}
+
+void write_ellipsoids(const Situation& at, Answer& answer) {
+  const Eigen::Index linear = at.frame.linear(), angular = at.J.rows() - linear;
+  const int joints = at.mechanism.active_count();
+  const int sliding = std::popcount(units_of(at).sliding_joints);
+  const bool rates_alike = sliding == 0 || sliding == joints, driven = at.model.driven();
+  const ActiveVector one = ActiveVector::Ones(joints);
+  Json velocity, force;
+  const auto of_one_kind = [&](const char* key, const char* load, const Jacobian& rows, double factor,
+                               const char* speed_unit, const char* load_unit) {
+    const char* shape = rows.rows() == 2 ? "ellipse" : "ellipsoid";
+    if (rates_alike) {
+      const Ellipsoid moves = velocity_ellipsoid(rows, one);
+      velocity[key] = ellipsoid_entry(moves);
+      answer.page().row(fmt::format("{} {}", key, shape), half_axes(moves, factor, speed_unit),
+                        fmt::format("half-axes at 1 {}", sliding == 0 ? "rad/s" : "m/s"));
+    }
+    if (driven) {
+      const Ellipsoid pushes = force_ellipsoid(rows, at.model.continuous_torque());
+      force[load] = ellipsoid_entry(pushes);
+      answer.page().row(fmt::format("{} {}", load, shape), half_axes(pushes, 1.0, load_unit),
+                        "half-axes, continuous");
+    }
+  };
+  if (linear > 0) of_one_kind("translation", "force", at.J.topRows(linear), 1e3, "mm/s", "N");
+  if (angular > 0) of_one_kind("rotation", "moment", at.J.bottomRows(angular), 1.0, "rad/s", "N m");
+  if (rates_alike) {
+    answer.put("velocity_ellipsoid", velocity);
+  } else {
+    answer.undefined("velocity_ellipsoid", "rates of joints that turn and that slide cannot be compared");
+  }
+  if (driven) {
+    answer.put("force_ellipsoid", force);
+  } else {
+    answer.undefined("force_ellipsoid", "some joints have no electric drive");
+  }
+}
+
+}  // namespace zwidth::at

@@ -80,7 +80,8 @@ int run(int argc, char** argv) {
   if (!words.empty() && words.front() == "help") {
     words.erase(words.begin());
     // What is no verb is left to be refused.
-    if (words.empty() || app.get_subcommand_no_throw(words.front()) != nullptr) words.emplace_back("--help");
+    const auto named = [&](const CLI::App* verb) { return verb->check_name(words.front()); };
+    if (words.empty() || !app.get_subcommands(named).empty()) words.emplace_back("--help");
   }
   std::reverse(words.begin(), words.end());  // as CLI11 takes them
   try {

@@ -86,7 +86,7 @@ void write_dexterity(const Situation& at, Answer& answer) {
   } else {
     answer.put("condition_number", json_number(figures.condition_number));
   }
-  answer.put("isotropy", at.singularity.loses ? 0.0 : json_number(isotropy(at.J)));
+  answer.put("isotropy", json_number(at.singularity.loses ? 0.0 : isotropy(at.J)));
   const double manipulability = at.singularity.loses ? 0.0 : figures.manipulability;
   answer.put("manipulability", json_number(manipulability));
   if (answer.wants("condition_number")) {

@@ -312,7 +312,8 @@ std::vector<Erratum> not_reproduced(const Arm& arm, const Torques& torques) {
 
 std::vector<Erratum> errata(const Torques& torques) {
   const auto q = [&](int position, int load, int joint) {
-    const SizingCase& one = torques.published.cases[static_cast<std::size_t>(6 * (position - 1) + load)];
+    const int at = 6 * (position - 1) + load;
+    const SizingCase& one = torques.published.cases[static_cast<std::size_t>(at)];
     return newtons(std::abs(one.torque[joint - 1]));
   };
   return {

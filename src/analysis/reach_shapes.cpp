@@ -94,9 +94,8 @@ InscribedShape largest_ball(const ReachMap& map) {
   const auto farthest = std::ranges::max_element(distance);
   if (farthest == distance.end() || *farthest <= 0.0F) return ball;
   const std::int64_t at = farthest - distance.begin();
-  const auto k = static_cast<double>(at % grid.n[2]), j = static_cast<double>(at / grid.n[2] % grid.n[1]);
-  const auto i = static_cast<double>(at / grid.n[2] / grid.n[1]);
-  ball.centre = middle_of(map, i, j, k);
+  const std::int64_t k = at % grid.n[2], j = at / grid.n[2] % grid.n[1], i = at / grid.n[2] / grid.n[1];
+  ball.centre = middle_of(map, static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
   // The middle of the nearest cube outside is that far; the boundary lies between it and the last middle
   // inside.
   ball.size = map.spacing * std::max(0.5, std::sqrt(static_cast<double>(*farthest)) - 0.5);

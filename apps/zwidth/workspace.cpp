@@ -339,7 +339,8 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
     write_map(map, arguments.map);
   }
   if (!arguments.figure.empty() && sweep.complete) draw(model, extents, options.limits, arguments.figure);
-  const WorkspaceVolume volume = sweep.complete ? workspace_volume(model.mechanism, effort) : WorkspaceVolume{};
+  const WorkspaceVolume volume =
+      sweep.complete ? finer_count(workspace_volume(model.mechanism, effort), sweep) : WorkspaceVolume{};
   const InscribedShapes inscribed = sweep.complete ? inscribed_shapes(model.mechanism) : InscribedShapes{};
 
   Json document;
@@ -389,8 +390,9 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
               fmt::format("lattice of {}, device frame", format_quantity(sweep.spacing, Dimension::length)));
   if (sweep.complete) {
     sheet.row("volume", quantity(volume.value, 1e6, "cm³", 6),
-              volume.method == WorkspaceVolume::Method::integral ? "integral of |det J| over the joint ranges"
-                                                                 : "counted on a lattice");
+              volume.method == WorkspaceVolume::Method::integral
+                  ? "integral of |det J| over the joint ranges"
+                  : fmt::format("counted, within {}", quantity(volume.error_estimate, 1e6, "cm³", 1)));
   }
   sheet.row("points inside", fmt::format("{}", sweep.inside),
             fmt::format("of {} in the box; {} by counting", sweep.lattice_points,

@@ -249,7 +249,8 @@ WorkspaceSheet workspace_sheet(const Mechanism& mechanism, const LatticeOptions&
   WorkspaceSheet workspace;
   workspace.sweep = sweep_workspace(mechanism, lattice, options.effort);
   workspace.extents = workspace_extents(mechanism);
-  workspace.volume = workspace_volume(mechanism, {.threads = options.effort.threads});
+  workspace.volume =
+      finer_count(workspace_volume(mechanism, {.threads = options.effort.threads}), workspace.sweep);
   workspace.inscribed = inscribed_shapes(mechanism);
   for (int axis = 0; axis < 3 && options.slice_points > 1; ++axis) {
     workspace.slices[axis] =

@@ -270,4 +270,13 @@ WorkspaceVolume workspace_volume(const Mechanism& mechanism, const Effort& effor
   return volume;
 }
 
+WorkspaceVolume finer_count(WorkspaceVolume volume, const LatticeSweep& sweep) {
+  const bool counted = volume.method == WorkspaceVolume::Method::lattice;
+  if (!counted || !sweep.complete || !(sweep.spacing < volume.spacing)) return volume;
+  volume.error_estimate *= sweep.spacing / volume.spacing;
+  volume.value = sweep.volume;
+  volume.spacing = sweep.spacing;
+  return volume;
+}
+
 }  // namespace zwidth

@@ -117,6 +117,9 @@ struct WorkspaceVolume {
 /// "integral", "lattice", "outline".
 const char* to_string(WorkspaceVolume::Method method);
 WorkspaceVolume workspace_volume(const Mechanism& mechanism, const Effort& effort = {});
+/// The volume, or, where it is counted on a coarser lattice than that of a complete sweep, the sweep's count.
+/// What counting errs by is of first order in the spacing.
+WorkspaceVolume finer_count(WorkspaceVolume volume, const LatticeSweep& sweep);
 
 /// The largest sphere, or axis-aligned cube, that lies in the workspace; of a tool in a plane the largest
 /// circle, or axis-aligned square.

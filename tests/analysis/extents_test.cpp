@@ -4,6 +4,7 @@
 #include <random>
 
 #include "support/deltas.h"
+#include "support/pneumatics.h"
 
 #include "zwidth/analysis/workspace.h"
 #include "zwidth/mechanism/families.h"
@@ -24,6 +25,49 @@ Description published(double from_degrees, double to_degrees) {
   DeltaDescription delta = test::published_delta();
   delta.joint_range = {from_degrees * kDegree, to_degrees * kDegree};
   return describe(delta);
+}
+
+// A flat prism: the plane region that two cranks sweep, times the slide. A coarse cubic lattice misses it by a
+// layer; the area is that of a raster of tool points with either branch of the two cranks in range.
+TEST(Volume, AFlatPrismIsCountedOnTheFinerLattice) {
+  const test::Prototype1 l;
+  constexpr double kRange = std::numbers::pi / 3.0;
+  Description device = test::prototype(l, {-kRange, kRange});
+  std::get<SerialDescription>(device.mechanism).joints[0].range = {0.0, 0.1};
+  const Mechanism mechanism(device);
+  constexpr double kSpacing = 0.005;
+  const WorkspaceVolume coarse = workspace_volume(mechanism);
+  ASSERT_EQ(coarse.method, WorkspaceVolume::Method::lattice);
+  const LatticeSweep sweep = sweep_workspace(mechanism, {.spacing = kSpacing});
+  const WorkspaceVolume volume = finer_count(coarse, sweep);
+  EXPECT_EQ(volume.value, sweep.volume);
+  EXPECT_EQ(volume.spacing, kSpacing);
+
+  // The tool point is at the end of two links, l2x and the hypotenuse of l3x and l3z, which leans by
+  // atan(l3x/l3z).
+  const double outer = std::hypot(l.l3x, l.l3z), lean = std::atan2(l.l3x, l.l3z);
+  constexpr double kStep = 1e-3;
+  int inside = 0;
+  for (double x = -0.8; x < 0.8; x += kStep) {
+    for (double y = -0.8; y < 0.8; y += kStep) {
+      const double cosine = (x * x + y * y - l.l2x * l.l2x - outer * outer) / (2.0 * l.l2x * outer);
+      if (std::abs(cosine) > 1.0) continue;
+      for (const double sign : {-1.0, 1.0}) {
+        const double bend = sign * std::acos(cosine);
+        const double first =
+            std::atan2(y, x) - std::atan2(outer * std::sin(bend), l.l2x + outer * std::cos(bend));
+        const double second = std::remainder(bend + lean, 2.0 * std::numbers::pi);
+        if (std::abs(std::remainder(first, 2.0 * std::numbers::pi)) > kRange || std::abs(second) > kRange)
+          continue;
+        ++inside;
+        break;
+      }
+    }
+  }
+  const double area = inside * kStep * kStep;
+  // One layer of the slide, and a strip of half a spacing along the rim of some 4 m.
+  EXPECT_NEAR(volume.value, 0.1 * area, area * kSpacing + 0.1 * 4.0 * 0.5 * kSpacing);
+  EXPECT_LT(std::abs(volume.value - 0.1 * area), std::abs(coarse.value - 0.1 * area));
 }
 
 TEST(Extents, PublishedRangesToTheLastKnownDigit) {

@@ -81,7 +81,7 @@ BodyLoad body_load(const BodyModel& body, const Matrix3& R, const Vector3& point
 }
 
 // Forces of all joints, as if each leg were free at its tip, that produce the links' motion; and the wrench at
-// the platform's origin that moves the platform.
+// the platform's origin that moves the platform, unless that is an arm's last link.
 struct FreeForces {
   JointVector joints;
   Wrench platform;
@@ -92,6 +92,8 @@ FreeForces free_forces(const Posture& posture, const Motions& motions, const Lin
   result.joints.setZero(mechanism.joint_count());
 
   // Each link's own load, as force and moment about its joint's point.
+  const bool serial = mechanism.serial() != nullptr;
+  const int last = mechanism.joint_count() - 1;
   std::array<Vector3, kMaxJoints> force, moment;
   for (int j = 0; j < mechanism.joint_count(); ++j) force[j] = moment[j] = Vector3::Zero();
   for (const BodyModel& body : mechanism.bodies()) {
@@ -103,7 +105,10 @@ FreeForces free_forces(const Posture& posture, const Motions& motions, const Lin
         link.acceleration + link.alpha.cross(pin) + link.omega.cross(link.omega.cross(pin));
     const BodyLoad load = body_load(body, R, acceleration, turn.omega, turn.alpha);
     const Vector3 about_pin = load.moment + (R * body.centre).cross(load.force);
-    if (body.joint < 0) {
+    if (body.joint < 0 && serial) {  // the platform is the last link
+      force[last] += load.force;
+      moment[last] += about_pin + (posture.tool().position - posture.joint_point(last)).cross(load.force);
+    } else if (body.joint < 0) {
       result.platform.force += load.force;
       result.platform.moment += about_pin;
     } else {
@@ -118,10 +123,10 @@ FreeForces free_forces(const Posture& posture, const Motions& motions, const Lin
     Vector3 carried_force = Vector3::Zero(), carried_moment = Vector3::Zero();  // about the outer joint's point
     for (int j = leg.first + leg.count - 1; j >= leg.first; --j) {
       const JointModel& joint = mechanism.joints()[j];
-      const bool last = j + 1 == leg.first + leg.count;
+      const bool outermost = j + 1 == leg.first + leg.count;
       // The outer joint's fixed point, to which its displacement (a prismatic one) has been brought back below.
       const Vector3 arm =
-          last ? Vector3::Zero() : Vector3(posture.link_rotation(j) * mechanism.joints()[j + 1].offset);
+          outermost ? Vector3::Zero() : Vector3(posture.link_rotation(j) * mechanism.joints()[j + 1].offset);
       const Vector3 own = moment[j] + arm.cross(carried_force);  // turns bars about the joint's point
       const Vector3 total_force = force[j] + carried_force;
       const Vector3 total_moment = own + carried_moment;
@@ -162,9 +167,21 @@ LinkMotion platform_motion(const Mechanism& mechanism, const ToolVector& velocit
   return {v.head<3>(), a.head<3>() + base, v.tail<3>(), a.tail<3>()};
 }
 
+// Everything but drive inertia and the user's push, of an arm: recursive Newton–Euler, with nothing to close.
+ActiveVector arm_torque(const Posture& posture, const ActiveVector& rate, const ActiveVector& acceleration) {
+  Motions motions;
+  move_links(posture, rate, acceleration, -posture.mechanism().gravity(), motions);
+  const int last = posture.mechanism().joint_count() - 1;
+  LinkMotion platform = motions[last];
+  const Vector3 arm = posture.tool().position - posture.joint_point(last);
+  platform.acceleration += platform.alpha.cross(arm) + platform.omega.cross(platform.omega.cross(arm));
+  return free_forces(posture, motions, platform).joints;
+}
+
 // Everything but drive inertia and the user's push.
 ActiveVector bodies_torque(const Posture& posture, const Rates& rates, const ActiveVector& rate,
                            const ActiveVector& acceleration) {
+  if (posture.mechanism().serial() != nullptr) return arm_torque(posture, rate, acceleration);
   const Vector3 base = -posture.mechanism().gravity();
   const BiasAcceleration bias = bias_acceleration(posture, rates, rate);
   Motions motions;

@@ -1,5 +1,3 @@
-#include "zwidth/analysis/inertia.h"
-
 #include <cmath>
 #include <fmt/format.h>
 
@@ -52,9 +50,6 @@ void write_cartesian_mass(const Situation& at, Answer& answer) {
   }
   const ToolMatrix felt = cartesian_mass(at.J, mass_matrix(at.posture, at.rates));
   answer.put("cartesian_mass", json_array(felt));
-  if (at.frame.linear() != felt.rows() || at.mechanism.tool_rows() != felt.rows()) return;
-  answer.columns(at.frame.names());
-  answer.cells("apparent mass [g]", apparent_mass(felt).along_axes, kMilli, "free to move sideways");
 }
 
 namespace {

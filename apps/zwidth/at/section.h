@@ -169,6 +169,12 @@ void write_mass_matrix(const Situation&, Answer&);
 void write_point_mass(const Situation&, Answer&);
 void write_cartesian_mass(const Situation&, Answer&);
 void write_resolution(const Situation&, Answer&);
+// acceleration.cpp
+void write_drive_inertia(const Situation&, Answer&);
+void write_apparent_mass(const Situation&, Answer&);
+void write_dynamic_manipulability(const Situation&, Answer&);
+void write_acceleration_limits(const Situation&, Answer&);
+void write_power(const Situation&, Answer&);
 // stiffness.cpp
 void write_stiffness(const Situation&, Answer&);
 void write_deflection(const Situation&, Answer&);

@@ -1,10 +1,14 @@
 #include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <random>
 #include <vector>
 
 #include "harness.h"
 
+#include "zwidth/analysis/mechanical.h"
 #include "zwidth/mechanism/batch_r_cube.h"
 #include "zwidth/mechanism/loaded_stiffness.h"
 #include "zwidth/mechanism/stiffness.h"
@@ -143,6 +147,25 @@ int main(int argc, char** argv) {
            });
   many.goal(0.4e-6);
   many.run();
+
+  std::vector<zwidth::Vector3> points;
+  for (std::size_t p = 0; p < x.size(); ++p) points.emplace_back(x[p], y[p], z[p]);
+  const bool quick = options.rounds <= 2;
+  if (quick) points.resize(10'000);
+  std::vector<double> times;
+  std::size_t inside = 0;
+  for (int round = 0; round < (quick ? 1 : 5); ++round) {
+    const double start = bench::wall_seconds();
+    const auto map = zwidth::map_mechanics(mechanism, zwidth::Drives(3), points, {.threads = 2});
+    times.push_back(bench::wall_seconds() - start);
+    inside = static_cast<std::size_t>(std::count_if(map.begin(), map.end(), [](const auto& values) {
+      return !std::isnan(figure(values, zwidth::MechanicalFigure::softest));
+    }));
+  }
+  std::printf(
+      "map_mechanics of %zu tool points, %zu inside, by the code for any mechanism: stiffness, masses and "
+      "frequencies.\nTwo threads, wall: median %.3f s, worst %.3f s.\n\n",
+      points.size(), inside, bench::quantile(times, 0.5), bench::quantile(times, 1.0));
 
   bench::Suite loaded("R-CUBE: loaded, weights and geometric term, iterated", options);
   loaded.add("zwidth loaded_stiffness", 8, [&](long n) {

@@ -3,67 +3,16 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "zwidth/analysis/internal/posture_statistic.h"
+#include "zwidth/analysis/mechanical.h"
 #include "zwidth/mechanism/dynamics.h"
 #include "zwidth/mechanism/stiffness.h"
 #include "zwidth/mechanism/vibration.h"
 
 namespace zwidth {
-namespace {
 
-void add(PostureStatistic& statistic, double value, const ActiveVector& at) {
-  if (statistic.count == 0 || value < statistic.min) {
-    statistic.min = value;
-    statistic.min_at = at;
-  }
-  if (statistic.count == 0 || value > statistic.max) {
-    statistic.max = value;
-    statistic.max_at = at;
-  }
-  ++statistic.count;
-  statistic.mean += (value - statistic.mean) / static_cast<double>(statistic.count);
-}
-
-// Of each drive where its joint stands; empty unless all that are needed are known.
-ActiveVector drive_stiffness(const Mechanism& mechanism, const std::vector<std::optional<Drive>>& drives,
-                             const ActiveVector& joints) {
-  ActiveVector stiffness =
-      ActiveVector::Constant(mechanism.active_count(), std::numeric_limits<double>::infinity());
-  for (int i = 0; i < mechanism.active_count(); ++i) {
-    if (mechanism.is_free(i)) continue;
-    const auto& drive = drives[static_cast<std::size_t>(i)];
-    const std::optional<double> known = drive ? drive->joint_stiffness(joints[i]) : std::nullopt;
-    if (!known) return {};
-    stiffness[i] = *known;
-  }
-  return stiffness;
-}
-
-struct Give {
-  StiffnessOptions options;
-  Stiffness stiffness;
-  Elasticity of = Elasticity::links;
-};
-
-std::optional<Give> give_of(const Mechanism& mechanism, const std::vector<std::optional<Drive>>& drives,
-                            const Posture& posture) {
-  const bool beams = !mechanism.beams().empty();
-  Give give;
-  give.options.drive_stiffness = drive_stiffness(mechanism, drives, posture.active());
-  if (give.options.drive_stiffness.size() > 0) {
-    give.stiffness = stiffness(posture, give.options);
-    give.of = beams ? Elasticity::both : Elasticity::drives;
-    if (!give.stiffness.rigid) return give;
-  }
-  give.options = {};
-  give.of = Elasticity::links;
-  give.stiffness = stiffness(posture);
-  if (give.stiffness.rigid) return std::nullopt;
-  return give;
-}
-
-}  // namespace
+using internal::add;
 
 const char* to_string(Elasticity elasticity) noexcept {
   switch (elasticity) {
@@ -90,7 +39,7 @@ std::optional<StiffnessSheet> stiffness_sheet(const Mechanism& mechanism,
     const Solution solution = solve_forward(mechanism, spread_posture(mechanism, sample));
     if (!solution) continue;
     const Posture& posture = *solution.posture;
-    const std::optional<Give> give = give_of(mechanism, drives, posture);
+    const std::optional<KnownStiffness> give = known_stiffness(posture, drives);
     if (!give) return std::nullopt;
     const Compliance compliance = zwidth::compliance(give->stiffness, length);
     const std::optional<ToolMatrix> felt = felt_stiffness(mechanism, compliance);

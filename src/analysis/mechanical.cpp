@@ -1,0 +1,224 @@
+#include "zwidth/analysis/mechanical.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "zwidth/analysis/internal/lattice.h"
+#include "zwidth/analysis/internal/parallel.h"
+#include "zwidth/analysis/internal/posture_statistic.h"
+#include "zwidth/analysis/internal/probe.h"
+#include "zwidth/mechanism/dynamics.h"
+#include "zwidth/mechanism/vibration.h"
+
+namespace zwidth {
+namespace {
+
+constexpr double kNothing = 1e-9;    // share of the largest mass that counts as none
+constexpr double kSingular = 1e-12;  // of the largest mobility: none at all
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+void put(MechanicalValues& values, MechanicalFigure first, int offset, double value) {
+  values[static_cast<std::size_t>(static_cast<int>(first) + offset)] = value;
+}
+
+// Of each drive where its joint stands; empty unless all that are needed are known.
+ActiveVector drive_stiffness(const Posture& posture, const Drives& drives) {
+  const Mechanism& mechanism = posture.mechanism();
+  const ActiveVector joints = posture.active();
+  ActiveVector stiffness =
+      ActiveVector::Constant(mechanism.active_count(), std::numeric_limits<double>::infinity());
+  for (int i = 0; i < mechanism.active_count(); ++i) {
+    if (mechanism.is_free(i)) continue;
+    const auto& drive = drives[static_cast<std::size_t>(i)];
+    const std::optional<double> known = drive ? drive->joint_stiffness(joints[i]) : std::nullopt;
+    if (!known) return {};
+    stiffness[i] = *known;
+  }
+  return stiffness;
+}
+
+// Least and largest of a symmetric matrix.
+Interval principal(const ToolMatrix& A) {
+  if (A.rows() == 3) {
+    const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(Matrix3(A), Eigen::EigenvaluesOnly);
+    return {eigen.eigenvalues()[0], eigen.eigenvalues()[2]};
+  }
+  const Eigen::SelfAdjointEigenSolver<ToolMatrix> eigen(A, Eigen::EigenvaluesOnly);
+  return {eigen.eigenvalues()[0], eigen.eigenvalues()[A.rows() - 1]};
+}
+
+void put_stiffness(const Mechanism& mechanism, const Compliance& compliance, MechanicalValues& values) {
+  const int linear = mechanism.linear_rows();
+  const std::span<const int> axes = mechanism.tool_axes();
+  ToolMatrix C(linear, linear);
+  for (int r = 0; r < linear; ++r) {
+    for (int c = 0; c < linear; ++c)
+      C(r, c) = compliance.matrix(axes[static_cast<std::size_t>(r)], axes[static_cast<std::size_t>(c)]);
+    put(values, MechanicalFigure::stiffness_x, axes[static_cast<std::size_t>(r)], 1.0 / C(r, r));
+  }
+  const Interval give = principal(C);
+  put(values, MechanicalFigure::softest, 0, 1.0 / give.max);
+  put(values, MechanicalFigure::stiffest, 0, 1.0 / give.min);
+}
+
+void put_masses(const Mechanism& mechanism, const ToolMatrix& mobility, MechanicalValues& values) {
+  const int linear = mechanism.linear_rows();
+  const ToolMatrix W = mobility.topLeftCorner(linear, linear);
+  const Interval range = principal(W);
+  const auto mass = [&](double w) { return w > kSingular * range.max ? 1.0 / w : kUnknown; };
+  for (int r = 0; r < linear; ++r)
+    put(values, MechanicalFigure::mass_x, mechanism.tool_axes()[static_cast<std::size_t>(r)], mass(W(r, r)));
+  put(values, MechanicalFigure::lightest, 0, mass(range.max));
+  put(values, MechanicalFigure::heaviest, 0, mass(range.min));
+}
+
+struct Builders {
+  std::int64_t inside = 0;
+  std::array<internal::StatisticBuilder, kMechanicalFigureCount> figures;
+
+  void add(const MechanicalValues& values, const Vector3& at) {
+    ++inside;
+    for (std::size_t f = 0; f < values.size(); ++f) {
+      if (std::isfinite(values[f])) figures[f].add(values[f], at);
+    }
+  }
+};
+
+}  // namespace
+
+const FigureInfo& mechanical_figure_info(int index) {
+  static constexpr std::array<FigureInfo, kMechanicalFigureCount> kInfo = {{
+      {"stiffness_x", "N/m", "stiffness along x"},
+      {"stiffness_y", "N/m", "stiffness along y"},
+      {"stiffness_z", "N/m", "stiffness along z"},
+      {"softest", "N/m", "stiffness in the softest direction"},
+      {"stiffest", "N/m", "stiffness in the stiffest direction"},
+      {"mass_x", "kg", "apparent mass along x"},
+      {"mass_y", "kg", "apparent mass along y"},
+      {"mass_z", "kg", "apparent mass along z"},
+      {"lightest", "kg", "apparent mass in the lightest direction"},
+      {"heaviest", "kg", "apparent mass in the heaviest direction"},
+      {"frequency_held", "rad/s", "lowest natural frequency, motors held"},
+      {"frequency_free", "rad/s", "lowest natural frequency, motors free"},
+  }};
+  return kInfo[static_cast<std::size_t>(index)];
+}
+
+std::optional<KnownStiffness> known_stiffness(const Posture& posture, const Drives& drives) {
+  const bool beams = !posture.mechanism().beams().empty();
+  KnownStiffness known;
+  known.options.drive_stiffness = drive_stiffness(posture, drives);
+  if (known.options.drive_stiffness.size() > 0) {
+    known.stiffness = stiffness(posture, known.options);
+    known.of = beams ? Elasticity::both : Elasticity::drives;
+    if (!known.stiffness.rigid) return known;
+  }
+  if (!beams) return std::nullopt;
+  known.options = {};
+  known.of = Elasticity::links;
+  known.stiffness = stiffness(posture);
+  if (known.stiffness.rigid) return std::nullopt;
+  return known;
+}
+
+MechanicalValues mechanical_figures(const Posture& posture, const Drives& drives) {
+  const Mechanism& mechanism = posture.mechanism();
+  MechanicalValues values;
+  values.fill(kUnknown);
+  if (mechanism.linear_rows() == 0) return values;
+
+  std::optional<ToolMatrix> felt;
+  if (const std::optional<KnownStiffness> known = known_stiffness(posture, drives)) {
+    const Compliance give = compliance(known->stiffness, mechanism.characteristic_length());
+    felt = felt_stiffness(mechanism, give);
+    if (felt) put_stiffness(mechanism, give, values);
+  }
+
+  const Rates rate = rates(posture);
+  ActiveMatrix M = mass_matrix(posture, rate);
+  if (!(M.diagonal().minCoeff() > 0.0)) return values;
+  put_masses(mechanism, tool_mobility(rate.tool, M), values);
+  if (!felt) return values;
+
+  M.diagonal() -= mechanism.drive_inertia();
+  if (!(M.diagonal().minCoeff() > kNothing * M.diagonal().maxCoeff())) return values;
+  const ToolMatrix links = tool_mobility(rate.tool, M);
+  if (const auto held = modes_by_mobility(*felt, links))
+    put(values, MechanicalFigure::frequency_held, 0, held->frequencies[0]);
+  if (!(mechanism.drive_inertia().minCoeff() > 0.0)) return values;
+  const ActiveMatrix rotors = mechanism.drive_inertia().asDiagonal();
+  if (const auto free = modes_by_mobility(*felt, links + tool_mobility(rate.tool, rotors)))
+    put(values, MechanicalFigure::frequency_free, 0, free->frequencies[0]);
+  return values;
+}
+
+MechanicalSweep sweep_mechanics(const Mechanism& mechanism, const Drives& drives, double spacing,
+                                const Effort& effort) {
+  assert(!workspace_obstacle(mechanism) && spacing > 0.0);
+  const auto box = internal::lattice_box(mechanism, spacing);
+  std::vector<Builders> planes(static_cast<std::size_t>(internal::size(box[0])));
+  MechanicalSweep sweep;
+  sweep.spacing = spacing;
+  sweep.complete = internal::for_each_index(planes.size(), effort, [&](std::size_t index) {
+    internal::Probe probe(mechanism);
+    const double x = static_cast<double>(box[0].first + static_cast<std::int64_t>(index)) * spacing;
+    for (std::int64_t j = box[1].first; j <= box[1].last; ++j) {
+      if (probe.dimension() == 3) probe.restart();
+      for (std::int64_t k = box[2].first; k <= box[2].last; ++k) {
+        const Vector3 point(x, static_cast<double>(j) * spacing, static_cast<double>(k) * spacing);
+        if (!probe.inverse(point).inside) continue;
+        if (const auto posture = probe.posture(point))
+          planes[index].add(mechanical_figures(*posture, drives), point);
+      }
+    }
+  });
+  Builders total;
+  for (const Builders& plane : planes) {
+    total.inside += plane.inside;
+    for (std::size_t f = 0; f < kMechanicalFigureCount; ++f) total.figures[f].add(plane.figures[f]);
+  }
+  sweep.inside = total.inside;
+  for (std::size_t f = 0; f < kMechanicalFigureCount; ++f) sweep.figures[f] = total.figures[f].result();
+  return sweep;
+}
+
+std::vector<MechanicalValues> map_mechanics(const Mechanism& mechanism, const Drives& drives,
+                                            std::span<const Vector3> positions, const Effort& effort) {
+  assert(!workspace_obstacle(mechanism));
+  constexpr std::size_t kBlock = 512;  // positions that follow each other from one start
+  MechanicalValues nothing;
+  nothing.fill(kUnknown);
+  std::vector<MechanicalValues> map(positions.size(), nothing);
+  const bool complete =
+      internal::for_each_index((positions.size() + kBlock - 1) / kBlock, effort, [&](std::size_t block) {
+        internal::Probe probe(mechanism);
+        const std::size_t end = std::min(positions.size(), (block + 1) * kBlock);
+        for (std::size_t p = block * kBlock; p < end; ++p) {
+          if (!probe.inverse(positions[p]).inside) continue;
+          if (const auto posture = probe.posture(positions[p])) map[p] = mechanical_figures(*posture, drives);
+        }
+      });
+  if (!complete) map.clear();
+  return map;
+}
+
+MechanicalPostures sweep_mechanics_of_postures(const Mechanism& mechanism, const Drives& drives,
+                                               std::int64_t samples) {
+  MechanicalPostures sweep;
+  for (std::int64_t sample = 0; sample < samples; ++sample) {
+    const Solution solution = solve_forward(mechanism, spread_posture(mechanism, sample));
+    if (!solution) continue;
+    ++sweep.solved;
+    const MechanicalValues values = mechanical_figures(*solution.posture, drives);
+    const ActiveVector at = solution.posture->active();
+    for (std::size_t f = 0; f < values.size(); ++f) {
+      if (std::isfinite(values[f])) internal::add(sweep.figures[f], values[f], at);
+    }
+  }
+  return sweep;
+}
+
+}  // namespace zwidth

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "zwidth/analysis/posture_sweep.h"
+#include "zwidth/analysis/stiffness_sheet.h"
+#include "zwidth/mechanism/figure.h"
+#include "zwidth/mechanism/stiffness.h"
+
+/// How stiff and how heavy a tool feels, and how fast it vibrates: one posture, and maps of many.
+
+namespace zwidth {
+
+/// Against pure forces: the tool may turn as it likes. Motors stand still for stiffness and the first
+/// frequency.
+enum class MechanicalFigure {
+  stiffness_x,     ///< force per displacement along x [N/m]
+  stiffness_y,     ///< along y [N/m]
+  stiffness_z,     ///< along z [N/m]
+  softest,         ///< in the softest direction [N/m]
+  stiffest,        ///< in the stiffest direction [N/m]
+  mass_x,          ///< force per acceleration along x while the tool is free to move otherwise [kg]
+  mass_y,          ///< along y [kg]
+  mass_z,          ///< along z [kg]
+  lightest,        ///< in the lightest direction [kg]
+  heaviest,        ///< in the heaviest direction [kg]
+  frequency_held,  ///< lowest natural frequency of links and platform, motors held [rad/s]
+  frequency_free,  ///< the same, rotors swinging against the tool [rad/s]
+};
+inline constexpr int kMechanicalFigureCount = 12;
+
+/// One value per figure, NaN where it is not known or not defined.
+using MechanicalValues = std::array<double, kMechanicalFigureCount>;
+inline double figure(const MechanicalValues& values, MechanicalFigure which) {
+  return values[static_cast<int>(which)];
+}
+
+/// REQUIRES: 0 <= index < kMechanicalFigureCount.
+const FigureInfo& mechanical_figure_info(int index);
+
+using Drives = std::vector<std::optional<Drive>>;  ///< one per active joint, where there is one
+
+/// The stiffness of a posture from all that is known to give, with what it took of the drives.
+struct KnownStiffness {
+  Stiffness stiffness;
+  StiffnessOptions options;
+  Elasticity of = Elasticity::links;
+};
+/// Nothing where neither links nor drives are known to give (`Stiffness::rigid`): the source does not say.
+std::optional<KnownStiffness> known_stiffness(const Posture& posture, const Drives& drives);
+
+/// Masses are known if every joint moves some (`drive_inertia` counts), frequencies if links and platform alone
+/// do. Stiffness has no value where the tool is free, nor a mass where it cannot move (it is infinite).
+MechanicalValues mechanical_figures(const Posture& posture, const Drives& drives);
+
+/// Over the points of a lattice in the workspace.
+struct MechanicalSweep {
+  double spacing = 0.0;  ///< [m]
+  std::int64_t inside = 0;
+  bool complete = true;
+  std::array<Statistic, kMechanicalFigureCount> figures;
+
+  const Statistic& operator[](MechanicalFigure which) const { return figures[static_cast<int>(which)]; }
+};
+/// The same for any number of threads. REQUIRES: !workspace_obstacle(mechanism), spacing > 0.
+MechanicalSweep sweep_mechanics(const Mechanism& mechanism, const Drives& drives, double spacing,
+                                const Effort& effort = {});
+
+/// Figures at tool positions [m]; NaN outside the workspace. The same for any number of threads; shorter if it
+/// was cancelled. REQUIRES: !workspace_obstacle(mechanism).
+std::vector<MechanicalValues> map_mechanics(const Mechanism& mechanism, const Drives& drives,
+                                            std::span<const Vector3> positions, const Effort& effort = {});
+
+/// Over postures spread evenly over the joint ranges: for tools that also turn.
+struct MechanicalPostures {
+  std::int64_t solved = 0;  ///< of them the loops closed
+  std::array<PostureStatistic, kMechanicalFigureCount> figures;
+
+  const PostureStatistic& operator[](MechanicalFigure which) const { return figures[static_cast<int>(which)]; }
+};
+MechanicalPostures sweep_mechanics_of_postures(const Mechanism& mechanism, const Drives& drives,
+                                               std::int64_t samples = 1000);
+
+}  // namespace zwidth

@@ -1,0 +1,160 @@
+#include "zwidth/analysis/mechanical.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "support/r_cubes.h"
+
+#include "zwidth/analysis/data_sheet.h"
+#include "zwidth/analysis/inertia.h"
+#include "zwidth/description/catalogue.h"
+#include "zwidth/description/read.h"
+#include "zwidth/mechanism/batch_r_cube.h"
+
+namespace zwidth {
+namespace {
+
+struct Device {
+  explicit Device(const char* name)
+      : description(read_description(name, {}, Catalogue::load())),
+        mechanism(mechanism_with_drives(description)),
+        drives(joint_drives(description, mechanism)) {}
+  Description description;
+  Mechanism mechanism;
+  Drives drives;
+};
+
+Posture middle(const Mechanism& mechanism) {
+  ActiveVector joints(mechanism.active_count());
+  for (int i = 0; i < joints.size(); ++i) joints[i] = mechanism.active_range(i).middle();
+  return *solve_forward(mechanism, joints).posture;
+}
+
+// How far the tool gives along a direction, from the compliance: the other route to each figure.
+TEST(Mechanical, StiffnessIsThatOfTheComplianceUnderPureForces) {
+  const Device cube("r-cube");
+  const Posture posture = middle(cube.mechanism);
+  const auto known = known_stiffness(posture, cube.drives);
+  ASSERT_TRUE(known);
+  const Matrix6 K = known->stiffness.matrix, C = K.inverse();
+  const MechanicalValues values = mechanical_figures(posture, cube.drives);
+  std::mt19937_64 random(91);
+  const double softest = figure(values, MechanicalFigure::softest),
+               stiffest = figure(values, MechanicalFigure::stiffest);
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(values[static_cast<std::size_t>(axis)] * C(axis, axis), 1.0, 1e-9);
+  double least = 1e300, most = 0.0;
+  for (int k = 0; k < 5000; ++k) {
+    const Vector3 u = test::random_angles(random, {-1, 1}).normalized();
+    const double along = 1.0 / (C.topLeftCorner<3, 3>() * u).norm();  // force over displacement, any direction
+    least = std::min(least, along);
+    most = std::max(most, along);
+  }
+  EXPECT_GE(least, softest * (1.0 - 1e-9));
+  EXPECT_LE(most, stiffest * (1.0 + 1e-9));
+  EXPECT_LT(least, 1.02 * softest);
+  EXPECT_GT(most, 0.98 * stiffest);
+}
+
+TEST(Mechanical, ASweepOfMassesIsThatOfInertia) {
+  for (const char* name : {"delta", "five-bar"}) {
+    const Device device(name);
+    const double spacing = 0.02;
+    const MechanicalSweep sweep = sweep_mechanics(device.mechanism, device.drives, spacing);
+    const InertiaSweep inertia = sweep_inertia(device.mechanism, spacing);
+    EXPECT_EQ(sweep.inside, inertia.inside);
+    const Statistic& heaviest = sweep[MechanicalFigure::heaviest];
+    EXPECT_NEAR(heaviest.max, inertia.heaviest.max, 1e-9 * heaviest.max);
+    // The devices are symmetric, and so are the places.
+    EXPECT_EQ(heaviest.max_at.cwiseAbs(), inertia.heaviest.max_at.cwiseAbs());
+    EXPECT_NEAR(sweep[MechanicalFigure::lightest].mean, inertia.lightest.mean, 1e-9);
+    EXPECT_NEAR(sweep[MechanicalFigure::mass_x].min, inertia.along_axes[0].min, 1e-9);
+  }
+}
+
+TEST(Mechanical, AMapOfTheRCubeIsThatOfItsBatch) {
+  // Links alone, written out in the batch kernel.
+  Device cube("r-cube");
+  const Drives none(3);
+  const RCubeLinks links = [&] {
+    RCubeLinks result{.geometry = r_cube_geometry(std::get<RCubeDescription>(cube.description.mechanism)),
+                      .rigidity = {}};
+    for (std::size_t k = 0; k < 3; ++k) result.rigidity[k] = cube.mechanism.beams()[k].rigidity;
+    return result;
+  }();
+  const RCubeStiffnessBatch batch(links);
+  std::vector<Vector3> points;
+  std::vector<double> x, y, z;
+  const Vector3 centre = middle(cube.mechanism).tool().position;
+  std::mt19937_64 random(92);
+  for (int p = 0; p < 2000; ++p) {
+    points.push_back(centre + test::random_angles(random, {-0.08, 0.08}));
+    x.push_back(points.back().x());
+    y.push_back(points.back().y());
+    z.push_back(points.back().z());
+  }
+  std::vector<double> figures(kRCubeElasticFigures * points.size());
+  batch.figures(x, y, z, figures);
+  const std::vector<MechanicalValues> map = map_mechanics(cube.mechanism, none, points, {.threads = 2});
+  ASSERT_EQ(map.size(), points.size());
+  int inside = 0;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const double softest = figure(map[p], MechanicalFigure::softest);
+    if (std::isnan(softest)) continue;
+    ++inside;
+    const double expected = figures[static_cast<std::size_t>(RCubeElasticFigure::softest) * points.size() + p];
+    EXPECT_NEAR(softest / expected, 1.0, 1e-7);
+    EXPECT_NEAR(figure(map[p], MechanicalFigure::stiffness_y) *
+                    figures[static_cast<std::size_t>(RCubeElasticFigure::give_yy) * points.size() + p],
+                1.0, 1e-7);
+  }
+  EXPECT_GT(inside, 100);
+  // Whatever the threads.
+  const std::vector<MechanicalValues> alone = map_mechanics(cube.mechanism, none, points, {.threads = 1});
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    for (std::size_t f = 0; f < kMechanicalFigureCount; ++f) {
+      EXPECT_TRUE(map[p][f] == alone[p][f] || (std::isnan(map[p][f]) && std::isnan(alone[p][f])));
+    }
+  }
+}
+
+TEST(Mechanical, WhatTheSourceDoesNotGiveHasNoValue) {
+  Description bare = test::r_cube_device();
+  const Mechanism mechanism(bare);
+  const MechanicalValues values = mechanical_figures(middle(mechanism), Drives(3));
+  for (const double value : values) EXPECT_TRUE(std::isnan(value));
+  // The five published devices: what their files give.
+  for (const char* name : {"delta", "five-bar", "r-cube", "seven-dof"}) {
+    const Device device(name);
+    const MechanicalPostures sweep = sweep_mechanics_of_postures(device.mechanism, device.drives, 50);
+    EXPECT_GT(sweep.solved, 0) << name;
+    EXPECT_GT(sweep[MechanicalFigure::lightest].count, 0) << name;
+  }
+}
+
+TEST(Mechanical, FrequenciesFallWithTheSquareRootOfTheMass) {
+  const auto cube = [](double times) {
+    Description description = test::r_cube_device();
+    const Material carbon{.elastic_modulus = 70e9, .poisson_ratio = 0.3, .density = 1630.0 * times};
+    for (const char* link : {"drive_link", "inner_link", "outer_link"})
+      description.bodies.push_back({.on = link, .beam = TubeDescription{0.02, 0.015, carbon}});
+    description.bodies.push_back({.on = "platform", .mass = 0.1 * times});
+    return description;
+  };
+  Mechanism one(cube(1.0)), four(cube(4.0));
+  EXPECT_NEAR(moving_mass(four) / moving_mass(one), 4.0, 1e-12);
+  // Rotors count for what the hand feels and for motors that are free, not for motors that are held.
+  one.set_drive_inertia(Vector3::Constant(1e-4));
+  four.set_drive_inertia(Vector3::Constant(4e-4));
+  const MechanicalValues light = mechanical_figures(middle(one), Drives(3)),
+                         heavy = mechanical_figures(middle(four), Drives(3));
+  for (const MechanicalFigure which : {MechanicalFigure::frequency_held, MechanicalFigure::frequency_free})
+    EXPECT_NEAR(figure(light, which) / figure(heavy, which), 2.0, 1e-9);
+  for (const MechanicalFigure which : {MechanicalFigure::lightest, MechanicalFigure::mass_z})
+    EXPECT_NEAR(figure(heavy, which) / figure(light, which), 4.0, 1e-9);
+  EXPECT_EQ(figure(light, MechanicalFigure::softest), figure(heavy, MechanicalFigure::softest));
+  EXPECT_GT(figure(light, MechanicalFigure::frequency_free), figure(light, MechanicalFigure::frequency_held));
+}
+
+}  // namespace
+}  // namespace zwidth

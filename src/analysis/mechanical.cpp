@@ -21,7 +21,7 @@ constexpr double kSingular = 1e-12;  // of the largest mobility: none at all
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 void put(MechanicalValues& values, MechanicalFigure first, int offset, double value) {
-  values[static_cast<std::size_t>(static_cast<int>(first) + offset)] = value;
+  values[static_cast<std::size_t>(first) + static_cast<std::size_t>(offset)] = value;
 }
 
 // Of each drive where its joint stands; empty unless all that are needed are known.

@@ -89,6 +89,21 @@ TEST(AtDynamics, PowerIsTorqueTimesRate) {
   EXPECT_NEAR(document["power"]["total"].get<double>(), total, 1e-12);
 }
 
+TEST(AtDynamics, EnergyIsThatOfTheMassMatrix) {
+  const json document = at({"delta", "--joints", "10deg,20deg,30deg", "--rate", "1,-2,0.5"});
+  const Eigen::Vector3d rate(1.0, -2.0, 0.5);
+  EXPECT_NEAR(document["energy"]["kinetic"].get<double>(),
+              0.5 * rate.dot(matrix(document["mass_matrix"]) * rate), 1e-12);
+  EXPECT_TRUE(at({"delta", "--joints", "0,0,0"})["energy"]["kinetic"].is_null());
+}
+
+TEST(AtDynamics, ThePageShowsHowTheToolMovesInEachMode) {
+  const Outcome outcome = run({"at", "r-cube", "--joints", "0.1,0.2,0.1", "--only", "natural_frequencies"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* line : {"motors held [Hz]", "motors free [Hz]", "along x", "along z"})
+    EXPECT_NE(outcome.out.find(line), std::string::npos) << line;
+}
+
 TEST(AtDynamics, WhereTheToolCannotMoveItIsInfinitelyHeavy) {
   const Outcome outcome = run({"at", "r-cube", "--set", "mechanism.inner_link=60 mm", "--set",
                                "mechanism.outer_link=51.7 mm", "--joints", "0,0,0", "--only",

@@ -200,4 +200,16 @@ void write_power(const Situation& at, Answer& answer) {
   answer.cells("power of the drives [W]", power, 1.0, fmt::format("together {} W", number(power.sum())));
 }
 
+void write_energy(const Situation& at, Answer& answer) {
+  const double potential = potential_energy(at.posture);
+  Json entry{{"potential", json_number(potential)}, {"kinetic", nullptr}};
+  if (at.moving) {
+    const double kinetic = kinetic_energy(at.posture, at.rate);
+    entry["kinetic"] = json_number(kinetic);
+    answer.page().row("kinetic energy", quantity(kinetic, 1e3, "mJ"),
+                      fmt::format("potential {}, zero at the base origin", quantity(potential, 1e3, "mJ")));
+  }
+  answer.put("energy", entry);
+}
+
 }  // namespace zwidth::at

@@ -167,6 +167,7 @@ const std::vector<Section>& sections() {
       {"Forces and torques", {"gravity_torques"}, write_gravity, true},
       {"Forces and torques", {"load", "torques"}, write_torques, true, kLoad},
       {"Forces and torques", {"power"}, write_power, true, kMotion},
+      {"Forces and torques", {"energy"}, write_energy, true},
       {"Forces and torques", {"force_limits"}, write_force_limits},
       {"Cylinders", {"cylinders"}, write_cylinders, true, "only for pneumatic drives"},
       {"Inertia", {"mass_matrix"}, write_mass_matrix, true},

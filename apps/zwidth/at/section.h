@@ -175,6 +175,7 @@ void write_apparent_mass(const Situation&, Answer&);
 void write_dynamic_manipulability(const Situation&, Answer&);
 void write_acceleration_limits(const Situation&, Answer&);
 void write_power(const Situation&, Answer&);
+void write_energy(const Situation&, Answer&);
 // stiffness.cpp
 void write_stiffness(const Situation&, Answer&);
 void write_deflection(const Situation&, Answer&);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 
 #include "section.h"
 
@@ -217,11 +218,24 @@ Json modes_entry(const Situation& at, const Modes& modes) {
   return entry;
 }
 
-void show_frequencies(const char* label, const Modes& modes, const char* note, Answer& answer) {
+void show_frequencies(const Situation& at, const char* label, const Modes& modes, const char* note,
+                      Answer& answer) {
   std::vector<std::string> names;
   for (Eigen::Index i = 0; i < modes.frequencies.size(); ++i) names.push_back(fmt::format("mode {}", i + 1));
   answer.columns(names);
-  answer.cells(label, modes.frequencies, 0.5 / 3.14159265358979323846, note);
+  answer.cells(label, modes.frequencies, 0.5 / std::numbers::pi, note);
+  // How the tool moves in each, a turn as the way of a point at the characteristic length.
+  Eigen::MatrixXd shapes = at.frame.turn * modes.shapes;
+  const Eigen::Index linear = at.frame.linear();
+  shapes.bottomRows(shapes.rows() - linear) *= at.mechanism.characteristic_length();
+  for (Eigen::Index c = 0; c < shapes.cols(); ++c) shapes.col(c).normalize();
+  const std::vector<std::string> axes = at.frame.names();
+  for (Eigen::Index r = 0; r < shapes.rows(); ++r) {
+    answer.cells(
+        fmt::format("  {} {}", r < linear ? "along" : "about",
+                    r < linear ? axes[static_cast<size_t>(r)] : axes[static_cast<size_t>(r)].substr(1)),
+        Eigen::VectorXd(shapes.row(r)), 1.0, "", 3, 1e-9);
+  }
 }
 
 }  // namespace
@@ -252,12 +266,12 @@ void write_natural_frequencies(const Situation& at, Answer& answer) {
   }
   entry["stiffness_of"] = state.best_of();
   entry["held"] = modes_entry(at, *held);
-  show_frequencies("motors held [Hz]", *held, state.best_of(), answer);
+  show_frequencies(at, "motors held [Hz]", *held, state.best_of(), answer);
   if (at.mechanism.drive_inertia().minCoeff() > 0.0) {
     const ActiveMatrix rotors = at.mechanism.drive_inertia().asDiagonal();
     const auto free = modes_by_mobility(*felt, mobility + tool_mobility(at.rates.tool, rotors));
     entry["free"] = free ? modes_entry(at, *free) : Json(nullptr);
-    if (free) show_frequencies("motors free [Hz]", *free, "rotors against tool", answer);
+    if (free) show_frequencies(at, "motors free [Hz]", *free, "rotors against tool", answer);
   } else {
     entry["free"] = nullptr;
   }
@@ -266,7 +280,7 @@ void write_natural_frequencies(const Situation& at, Answer& answer) {
     const ToolMatrix block = state.links->matrix.topLeftCorner<3, 3>();
     if (const auto index = modes_by_mobility(block, mobility)) {
       entry["rotation_held"] = modes_entry(at, *index);
-      show_frequencies("  links, no turning [Hz]", *index, "the index of Görgülü 2018", answer);
+      show_frequencies(at, "  links, no turning [Hz]", *index, "the index of Görgülü 2018", answer);
     }
   }
   answer.put("natural_frequencies", entry);

@@ -97,6 +97,35 @@ TEST(AtDynamics, EnergyIsThatOfTheMassMatrix) {
   EXPECT_TRUE(at({"delta", "--joints", "0,0,0"})["energy"]["kinetic"].is_null());
 }
 
+TEST(AtDynamics, ALoadedDeviceGivesAsItsComplianceSaysForSmallLoads) {
+  const std::vector<std::string> place{"r-cube", "--joints", "0.1,0.2,0.1"};
+  const auto with = [&](const char* load) {
+    std::vector<std::string> arguments = place;
+    arguments.insert(arguments.end(), {"--load", load});
+    return at(arguments);
+  };
+  const json sag = at(place), loaded = with("0.01,0,0");
+  EXPECT_EQ(sag["loaded"]["status"], "balanced");
+  EXPECT_LT(sag["loaded"]["residual"].get<double>(), 1e-12);
+  const Eigen::MatrixXd K = matrix(sag["loaded"]["stiffness"]);
+  const Eigen::VectorXd moved =
+      vector(loaded["loaded"]["displacement"]) - vector(sag["loaded"]["displacement"]);
+  // The hand pushes back with what the device exerts on it.
+  Eigen::VectorXd push = Eigen::VectorXd::Zero(6);
+  push[0] = -0.01;
+  EXPECT_LT((moved - K.inverse() * push).norm(), 1e-4 * moved.norm());
+  EXPECT_EQ(at({"five-bar", "--joints", "120deg,60deg"})["loaded"], nullptr);
+}
+
+TEST(AtDynamics, ALoadThatBreaksTheBalanceIsNoAnswer) {
+  const Outcome outcome = run({"at", "r-cube", "--joints", "0.1,0.2,0.1", "--load", "1e5,0,0", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json loaded = outcome.json()["loaded"];
+  EXPECT_NE(loaded["status"], "balanced");
+  EXPECT_TRUE(loaded["displacement"].is_null());
+  EXPECT_GT(loaded["residual"].get<double>(), 0.0);
+}
+
 TEST(AtDynamics, ThePageShowsHowTheToolMovesInEachMode) {
   const Outcome outcome = run({"at", "r-cube", "--joints", "0.1,0.2,0.1", "--only", "natural_frequencies"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;

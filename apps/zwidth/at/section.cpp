@@ -179,6 +179,7 @@ const std::vector<Section>& sections() {
       {"Inertia", {"acceleration_limits"}, write_acceleration_limits, true},
       {"Stiffness", {"stiffness", "stiffness_with_drives", "compliance"}, write_stiffness},
       {"Stiffness", {"deflection"}, write_deflection, false, kLoad},
+      {"Stiffness", {"loaded"}, write_loaded},
       {"Stiffness", {"compliance_shares"}, write_compliance_shares},
       {"Vibration", {"natural_frequencies"}, write_natural_frequencies, true},
       {"Resolution", {"resolution"}, write_resolution, true},

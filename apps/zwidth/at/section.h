@@ -179,6 +179,7 @@ void write_energy(const Situation&, Answer&);
 // stiffness.cpp
 void write_stiffness(const Situation&, Answer&);
 void write_deflection(const Situation&, Answer&);
+void write_loaded(const Situation&, Answer&);
 void write_compliance_shares(const Situation&, Answer&);
 void write_natural_frequencies(const Situation&, Answer&);
 

@@ -8,6 +8,7 @@
 #include "section.h"
 
 #include "zwidth/mechanism/dynamics.h"
+#include "zwidth/mechanism/loaded_stiffness.h"
 #include "zwidth/mechanism/vibration.h"
 
 /// How far the tool gives way, and how it vibrates.
@@ -163,6 +164,44 @@ void write_deflection(const Situation& at, Answer& answer) {
   answer.axes();
   answer.cells("deflection under the load [µm]", Eigen::VectorXd(moved.head<3>()), 1e6, "as the hand pushes");
   if (own.rows == 6) answer.cells("  turned by [mrad]", Eigen::VectorXd(moved.tail<3>()), kMilli);
+}
+
+void write_loaded(const Situation& at, Answer& answer) {
+  const Elastic state = elastic(at);
+  if (!state.best()) {
+    answer.undefined("loaded", kNoBeams);
+    return;
+  }
+  for (const BeamModel& beam : at.mechanism.beams()) {
+    if (at.mechanism.joints()[static_cast<size_t>(beam.joint)].type != JointType::parallelogram) continue;
+    answer.undefined("loaded", "a link that bends is moved by parallel bars: not computed");
+    return;
+  }
+  Loading loading;
+  if (at.load) loading.tool = -at.mechanism.six_components(ToolVector(at.frame.turn.transpose() * *at.load));
+  const LoadedState found = loaded_stiffness(at.posture, loading, {.stiffness = state.best_options()});
+  Json entry{{"status", to_string(found.status)},
+             {"iterations", found.iterations},
+             {"residual", json_number(found.residual)},
+             {"displacement", nullptr},
+             {"stiffness", nullptr},
+             {"stiffness_of", state.best_of()}};
+  const char* label = at.load ? "weights and load, in balance [µm]" : "sag under its own weight [µm]";
+  if (found.status == LoadedStatus::balanced) {
+    Vector6 moved = found.displacement;
+    moved.head<3>() = (at.frame.R * moved.head<3>()).eval();
+    moved.tail<3>() = (at.frame.R * moved.tail<3>()).eval();
+    entry["displacement"] = json_array(Eigen::VectorXd(moved.head(state.best()->rows)));
+    entry["stiffness"] = json_array(turned(at, found.stiffness, state.best()->rows));
+    answer.axes();
+    answer.cells(label, Eigen::VectorXd(moved.head<3>()), 1e6,
+                 fmt::format("iterated {} times, {} give", found.iterations, state.best_of()), 4, 1e-9);
+  } else {
+    answer.page().row(label, to_string(found.status),
+                      fmt::format("after {} steps, the last {} of the longest link", found.iterations,
+                                  number(found.residual)));
+  }
+  answer.put("loaded", entry);
 }
 
 void write_compliance_shares(const Situation& at, Answer& answer) {

@@ -89,6 +89,20 @@ TEST(AtDynamics, PowerIsTorqueTimesRate) {
   EXPECT_NEAR(document["power"]["total"].get<double>(), total, 1e-12);
 }
 
+TEST(AtDynamics, TorquesAccelerateAsTheyAreNeededFor) {
+  // What `torques` says an acceleration needs gives it.
+  const json needed = at({"seven-dof", "--joints", "0,75deg,10deg,90deg,90deg,80deg,90deg", "--rate",
+                          "1,-2,0.5,0,1,2,3", "--acceleration", "9,8,7,6,5,4,3", "--load", "1,2,3"});
+  std::string torques;
+  for (const json& torque : needed["torques"]) torques += (torques.empty() ? "" : ",") + torque.dump();
+  const json document = at({"seven-dof", "--joints", "0,75deg,10deg,90deg,90deg,80deg,90deg", "--rate",
+                            "1,-2,0.5,0,1,2,3", "--torque", torques, "--load", "1,2,3"});
+  for (size_t j = 0; j < 7; ++j)
+    EXPECT_NEAR(document["accelerations"]["joints"][j].get<double>(), 9.0 - static_cast<double>(j), 1e-6);
+  EXPECT_LT((vector(document["accelerations"]["tool"]) - vector(needed["acceleration"])).norm(), 1e-6);
+  EXPECT_EQ(run({"at", "delta", "--joints", "0,0,0", "--torque", "1,2"}).status, 2);
+}
+
 TEST(AtDynamics, EnergyIsThatOfTheMassMatrix) {
   const json document = at({"delta", "--joints", "10deg,20deg,30deg", "--rate", "1,-2,0.5"});
   const Eigen::Vector3d rate(1.0, -2.0, 0.5);

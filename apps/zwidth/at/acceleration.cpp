@@ -200,6 +200,22 @@ void write_power(const Situation& at, Answer& answer) {
   answer.cells("power of the drives [W]", power, 1.0, fmt::format("together {} W", number(power.sum())));
 }
 
+void write_accelerations(const Situation& at, Answer& answer) {
+  if (!at.torque) return;
+  if (!motion_of(at, at.rate)) {
+    answer.undefined("accelerations", kNoMass);
+    return;
+  }
+  ToolVector push = ToolVector::Zero(at.mechanism.tool_rows());
+  if (at.load) push = -(at.frame.turn.transpose() * *at.load);
+  const ActiveVector joints = forward_dynamics(at.posture, at.rate, *at.torque, push);
+  const ToolVector tool = at.J * joints + at.frame.turn * bias_acceleration(at.posture, at.rates, at.rate).tool;
+  answer.put("accelerations", Json{{"joints", json_array(joints)}, {"tool", json_array(tool)}});
+  answer.columns(at.mechanism.active_names());
+  answer.cells("the torques accelerate [rad/s², m/s²]", joints, 1.0);
+  answer.tool_vector(at.frame, tool, "  and the tool [m/s²]", 1.0, "  and turn it [rad/s²]", 1.0);
+}
+
 void write_energy(const Situation& at, Answer& answer) {
   const double potential = potential_energy(at.posture);
   Json entry{{"potential", json_number(potential)}, {"kinetic", nullptr}};

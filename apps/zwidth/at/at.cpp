@@ -109,6 +109,9 @@ void add_at(CLI::App& app, Context& context) {
   verb->add_option("--rate", arguments->rate, "rates of the active joints")->type_name("A,B,...");
   verb->add_option("--acceleration", arguments->acceleration, "accelerations of the active joints")
       ->type_name("A,B,...");
+  verb->add_option("--torque", arguments->torque,
+                   "torques of the drives, to ask how joints and tool accelerate under them")
+      ->type_name("A,B,...");
   verb->add_option("--frame", arguments->frame,
                    "frame of positions and forces, given and printed: device or user")
       ->type_name("FRAME");

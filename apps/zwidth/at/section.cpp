@@ -16,6 +16,7 @@ constexpr double kRounding = 1e-7;
 
 constexpr const char* kMotion = "give --rate or --acceleration";
 constexpr const char* kLoad = "give --load";
+constexpr const char* kTorque = "give --torque";
 
 /// Keys of the head, and of the answer to --position; `write_sections` does not write them.
 const std::vector<std::string> kOtherKeys = {"device", "status", "frame",     "reason",
@@ -135,6 +136,13 @@ Situation::Situation(const Model& of, const Arguments& arguments, const Frame& u
   if (!arguments.rate.empty()) rate = joint_option("--rate", arguments.rate, mechanism, 1);
   if (!arguments.acceleration.empty())
     acceleration = joint_option("--acceleration", arguments.acceleration, mechanism, 2);
+  if (!arguments.torque.empty()) {
+    std::vector<Dimension> dimensions;
+    for (int i = 0; i < mechanism.active_count(); ++i)
+      dimensions.push_back(slides(mechanism, mechanism.active_joint(i)) ? Dimension::force : Dimension::torque);
+    const std::vector<double> values = option_values("--torque", arguments.torque, dimensions);
+    torque = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  }
   if (!arguments.load.empty()) {
     // The force alone, or the moment with it.
     const auto given = static_cast<int>(std::count(arguments.load.begin(), arguments.load.end(), ',')) + 1;
@@ -164,6 +172,7 @@ const std::vector<Section>& sections() {
       {"Dexterity", {"velocity_ellipsoid", "force_ellipsoid"}, write_ellipsoids, true},
       {"Dexterity", {"singularity"}, write_singularity},
       {"Motion", {"velocity", "acceleration"}, write_motion, true, kMotion},
+      {"Motion", {"accelerations"}, write_accelerations, true, kTorque},
       {"Forces and torques", {"gravity_torques"}, write_gravity, true},
       {"Forces and torques", {"load", "torques"}, write_torques, true, kLoad},
       {"Forces and torques", {"power"}, write_power, true, kMotion},
@@ -179,6 +188,7 @@ const std::vector<Section>& sections() {
       {"Inertia", {"acceleration_limits"}, write_acceleration_limits, true},
       {"Stiffness", {"stiffness", "stiffness_with_drives", "compliance"}, write_stiffness},
       {"Stiffness", {"deflection"}, write_deflection, false, kLoad},
+      {"Stiffness", {"stiffness_indices"}, write_stiffness_indices},
       {"Stiffness", {"loaded"}, write_loaded},
       {"Stiffness", {"compliance_shares"}, write_compliance_shares},
       {"Vibration", {"natural_frequencies"}, write_natural_frequencies, true},

@@ -29,6 +29,7 @@ struct Arguments : DeviceArguments {
   std::string load;
   std::string rate;
   std::string acceleration;
+  std::string torque;
   std::string frame = "device";
   std::vector<std::string> only;
 };
@@ -83,10 +84,11 @@ struct Situation {
   Rates rates;  ///< as the library gives them, in the base frame
   Jacobian J;   ///< with singular values that are rounding made zero
   Singularity singularity;
-  std::optional<ToolVector> load;  ///< what the device exerts on the hand [N, N m]
-  ActiveVector rate;               ///< zero unless given
-  ActiveVector acceleration;       ///< zero unless given
-  bool moving = false;             ///< a rate or an acceleration was given
+  std::optional<ToolVector> load;      ///< what the device exerts on the hand [N, N m]
+  ActiveVector rate;                   ///< zero unless given
+  ActiveVector acceleration;           ///< zero unless given
+  bool moving = false;                 ///< a rate or an acceleration was given
+  std::optional<ActiveVector> torque;  ///< what the drives give, to ask for the accelerations [N m, N]
 };
 
 /// The answer under construction: one JSON document, or one page.
@@ -175,10 +177,12 @@ void write_apparent_mass(const Situation&, Answer&);
 void write_dynamic_manipulability(const Situation&, Answer&);
 void write_acceleration_limits(const Situation&, Answer&);
 void write_power(const Situation&, Answer&);
+void write_accelerations(const Situation&, Answer&);
 void write_energy(const Situation&, Answer&);
 // stiffness.cpp
 void write_stiffness(const Situation&, Answer&);
 void write_deflection(const Situation&, Answer&);
+void write_stiffness_indices(const Situation&, Answer&);
 void write_loaded(const Situation&, Answer&);
 void write_compliance_shares(const Situation&, Answer&);
 void write_natural_frequencies(const Situation&, Answer&);

@@ -166,6 +166,25 @@ void write_deflection(const Situation& at, Answer& answer) {
   if (own.rows == 6) answer.cells("  turned by [mrad]", Eigen::VectorXd(moved.tail<3>()), kMilli);
 }
 
+void write_stiffness_indices(const Situation& at, Answer& answer) {
+  const Elastic state = elastic(at);
+  if (!state.best() || state.best()->rows != 6) {
+    answer.undefined("stiffness_indices",
+                     state.best() ? "only for a tool that is held against turning" : kNoBeams);
+    return;
+  }
+  const StiffnessIndices indices = stiffness_indices(state.best()->matrix);
+  answer.put("stiffness_indices",
+             Json{{"frobenius", json_number(indices.frobenius)},
+                  {"condition_translation", json_number(indices.condition_translation)},
+                  {"condition_rotation", json_number(indices.condition_rotation)},
+                  {"determinant_translation", json_number(indices.determinant_translation)},
+                  {"determinant_rotation", json_number(indices.determinant_rotation)},
+                  {"stiffness_of", state.best_of()}});
+  answer.page().row("condition of the stiffness", number(indices.condition_translation),
+                    fmt::format("of forces; {} of moments", number(indices.condition_rotation)));
+}
+
 void write_loaded(const Situation& at, Answer& answer) {
   const Elastic state = elastic(at);
   if (!state.best()) {
@@ -280,6 +299,11 @@ void show_frequencies(const Situation& at, const char* label, const Modes& modes
 }  // namespace
 
 void write_natural_frequencies(const Situation& at, Answer& answer) {
+  if (at.singularity.loses) {
+    answer.undefined("natural_frequencies",
+                     "the tool cannot move along some direction: no mass goes with its give");
+    return;
+  }
   const Elastic state = elastic(at);
   if (!state.best()) {
     answer.page().row("natural frequencies", "not given by the source", "as the stiffness");

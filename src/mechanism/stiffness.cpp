@@ -233,6 +233,18 @@ void invert(const Matrix6& K, double length, Compliance& result) {
   if constexpr (N == 6) scale.template tail<3>().setConstant(1.0 / length);
   // Displacements d = S d' with rotations as lengths.
   const Square scaled = scale.asDiagonal() * K.topLeftCorner<N, N>() * scale.asDiagonal();
+  // Most postures are far from free: 1/tr(K^-1) is not above the smallest eigenvalue, tr K not below the
+  // largest.
+  constexpr double kClearlyHeld = 1e-9;
+  const Eigen::LLT<Square> factored(scaled);
+  if (factored.info() == Eigen::Success) {
+    const Square inverse = factored.solve(Square::Identity());
+    if (1.0 > kClearlyHeld * scaled.trace() * inverse.trace()) {
+      result.matrix.topLeftCorner<N, N>() =
+          scale.asDiagonal() * (0.5 * (inverse + inverse.transpose())) * scale.asDiagonal();
+      return;
+    }
+  }
   const Eigen::SelfAdjointEigenSolver<Square> eigen(scaled);
   constexpr double kFree = 1e-13;  // the square of what rounding leaves of a wrench that is not there
   const double largest = eigen.eigenvalues()[N - 1];

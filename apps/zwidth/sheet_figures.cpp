@@ -8,6 +8,7 @@
 
 #include "figure/plot.h"
 #include "figure/solid.h"
+#include "mechanics.h"
 #include "sheet_plane.h"
 #include "terminal.h"
 
@@ -608,6 +609,9 @@ std::vector<SheetFigure> sheet_figures(const DataSheet& sheet, const Description
         }
       }
     }
+  }
+  if (sheet.mechanics) {
+    for (SheetFigure& figure : mechanics_figures(sheet.mechanics->cuts)) figures.push_back(std::move(figure));
   }
   if (sheet.arm && sheet.arm->reach) {
     for (const int normal : kCuts) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "figure/svg.h"
+#include "mechanics.h"
 #include "model.h"
 #include "sheet_arm.h"
 #include "sheet_stiffness.h"
@@ -526,6 +527,7 @@ class Page {
     statistics("In the heaviest direction", sheet_.inertia->heaviest, kMilli, "g");
     statistics("Largest joint torque against gravity", sheet_.inertia->gravity_torque, kMilli, "mN m");
     statistics_end();
+    show_figures("inertia", "three");
     values_table([](const DescribedValue& value) { return value.table.starts_with("body"); }, true);
   }
 
@@ -542,6 +544,15 @@ class Page {
       }
       statistics_end();
       body_ += fmt::format("<p>What gives way: {}.</p>\n", escaped(give_text(*sheet_.stiffness)));
+    }
+    if (sheet_.mechanics && sheet_.mechanics->sweep.of) {
+      std::string places;
+      for (const MechanicsPlace& place : mechanics_places(sheet_.mechanics->sweep, sheet_.plane.has_value()))
+        places += fmt::format("{}{}: {} {}", places.empty() ? "" : "; ", place.name, place.value, place.place);
+      if (!places.empty())
+        body_ += fmt::format("<p>On a lattice of {}: {}.</p>\n",
+                             readable(sheet_.mechanics->sweep.spacing, "m", 3), escaped(places));
+      show_figures("stiffness", "three");
     }
     for (const std::string& laminate : laminate_texts(description_))
       body_ += fmt::format("<p>{}</p>\n", escaped(laminate));

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "mechanics.h"
 #include "sheet_arm.h"
 #include "sheet_stiffness.h"
 
@@ -329,6 +330,7 @@ Json data_sheet_json(const DataSheet& sheet, const Description& description) {
   } else {
     absent("inertia", "nothing has mass");
   }
+  document["mechanics"] = sheet.mechanics ? mechanics_json(sheet.mechanics->sweep) : Json(nullptr);
   if (sheet.stiffness) {
     document["stiffness"] = stiffness_json(*sheet.stiffness);
   } else {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <vector>
 
+#include "mechanics.h"
 #include "model.h"
 #include "sheet_arm.h"
 #include "sheet_stiffness.h"
@@ -332,6 +333,10 @@ class SheetText {
       text_.table({"over postures", "min", "mean", "max", ""}, stiffness_rows(sheet_));
       text_.paragraph(stiffness_how(*sheet_.stiffness), 2, Tint::dim);
       text_.paragraph("What gives way: " + give_text(*sheet_.stiffness) + ".", 2);
+    }
+    if (sheet_.mechanics && sheet_.mechanics->sweep.of) {
+      for (const MechanicsPlace& place : mechanics_places(sheet_.mechanics->sweep, sheet_.plane.has_value()))
+        text_.row(place.name, place.value, place.place);
     }
     for (const std::string& laminate : laminate_texts(description_)) text_.paragraph(laminate, 2);
     for (const std::string& missing : not_given(sheet_)) text_.paragraph(missing, 2);

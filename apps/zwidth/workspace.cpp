@@ -12,6 +12,7 @@
 #include "figure/svg.h"
 #include "gnuplot.h"
 #include "interrupt.h"
+#include "mechanics.h"
 #include "model.h"
 #include "sheet_json.h"
 #include "sheet_text.h"
@@ -91,6 +92,56 @@ std::string gnuplot_palette() {
   std::string stops;
   for (int i = 0; i <= 12; ++i) stops += fmt::format("{}{} '{}'", i > 0 ? ", " : "", i, map_colour(i / 12.0));
   return fmt::format("set palette defined ({})\n", stops);
+}
+
+Drawn drawn_of(const WorkspaceArguments& arguments, const Model& model) {
+  const bool plane = in_plane(model.mechanism);
+  Drawn drawn;
+  std::vector<std::string> known;
+  for (int k = 0; k < kFigureCount; ++k) {
+    const FigureInfo& info = plane ? plane_figure_info(k) : figure_info(k);
+    if (plane && info.name.ends_with("_z")) continue;
+    known.emplace_back(info.name);
+    if (info.name != arguments.of) continue;
+    const std::string unit = statistics_factor(info.unit, drawn.factor);
+    drawn.index = k;
+    drawn.title = std::string(info.name) + (unit.empty() ? "" : " [" + unit + "]");
+    std::replace(drawn.title.begin(), drawn.title.end(), '_', ' ');
+    return drawn;
+  }
+  for (int k = 0; k < kMechanicalFigureCount; ++k) {
+    const FigureInfo& info = mechanical_figure_info(k);
+    known.emplace_back(info.name);
+    if (info.name != arguments.of) continue;
+    const ShownUnit shown = shown_unit(static_cast<MechanicalFigure>(k));
+    return {true, k, fmt::format("{} [{}]", info.meaning, shown.unit), shown.factor};
+  }
+  throw InputError(
+      fmt::format("--of {}: there is no such figure; {}", arguments.of, suggest(arguments.of, known)));
+}
+
+std::vector<double> drawn_values(const Drawn& drawn, const Model& model, const SliceMap& map) {
+  std::vector<double> values = drawn.mechanical ? cut_mechanics(model.mechanism, model.drives, map,
+                                                                1)[static_cast<MechanicalFigure>(drawn.index)]
+                                                : map.values[static_cast<size_t>(drawn.index)];
+  for (double& value : values) value *= drawn.factor;
+  return values;
+}
+
+Interval drawn_range(const std::vector<std::vector<double>>& cuts) {
+  std::vector<double> values;
+  for (const std::vector<double>& cut : cuts)
+    std::copy_if(cut.begin(), cut.end(), std::back_inserter(values), [](double v) { return std::isfinite(v); });
+  if (values.empty()) return {0.0, 1.0};
+  std::sort(values.begin(), values.end());
+  const Interval range{values.front(),
+                       values[static_cast<size_t>(0.98 * static_cast<double>(values.size() - 1))]};
+  return range.width() > 1e-6 * std::abs(range.max) ? range : Interval{0.9 * range.max, 1.1 * range.max};
+}
+
+MechanicalSweep mechanics_of(const Model& model, const Extents& extents, double spacing, const Effort& effort) {
+  constexpr double kPoints = 20'000.0;
+  return sweep_mechanics(model.mechanism, model.drives, fitting_spacing(extents, spacing, kPoints), effort);
 }
 
 void read_figures(const LatticeSweep& sweep, int dimension, bool all, bool driven, Json& document,
@@ -213,22 +264,20 @@ int compare(const WorkspaceArguments& arguments, const Model& model, double spac
 }
 
 /// Three cuts with their condition number, and the surface, on one sheet.
-void draw(const Model& model, const Extents& extents, const DriveLimits& limits, const std::string& path) {
+void draw(const Model& model, const Extents& extents, const DriveLimits& limits, const Drawn& drawn,
+          const std::string& path) {
   std::string script = gnuplot_terminal(path, 1000.0, 860.0);
   const char* axes = "xyz";
-  double worst = 1.0;
   std::vector<SliceMap> maps;
+  std::vector<std::vector<double>> values;
   for (const int normal : {2, 1, 0}) {
     maps.push_back(map_slice(model.mechanism, extents, normal,
                              extents.range[static_cast<size_t>(normal)].middle(), 161, limits));
-    for (const double value : maps.back().values[static_cast<size_t>(Figure::condition_number)]) {
-      if (std::isfinite(value)) worst = std::max(worst, value);
-    }
+    values.push_back(drawn_values(drawn, model, maps.back()));
   }
-  worst = std::min(worst, 50.0);
+  const Interval range = drawn_range(values);
   for (size_t i = 0; i < maps.size(); ++i) {
-    script += gnuplot_block(maps[i].values[static_cast<size_t>(Figure::condition_number)], maps[i].nu,
-                            fmt::format("map{}", i));
+    script += gnuplot_block(values[i], maps[i].nu, fmt::format("map{}", i));
     script += gnuplot_outlines(maps[i].slice, fmt::format("edge{}", i));
   }
   const SurfaceMesh mesh = workspace_surface(model.mechanism, 16);
@@ -255,10 +304,10 @@ void draw(const Model& model, const Extents& extents, const DriveLimits& limits,
   script += "EOD\n";
   script += fmt::format(
       "set multiplot layout 2,2 margins 0.08,0.95,0.08,0.92 spacing 0.13,0.12 title 'Workspace of {}: "
-      "condition number of the Jacobian on three cuts'\n"
-      "{}set cbrange [1:{:g}]\nset size ratio -1\nset grid front lc rgb '#dddddd'\nset "
+      "{} on three cuts'\n"
+      "{}set cbrange [{:g}:{:g}]\nset size ratio -1\nset grid front lc rgb '#dddddd'\nset "
       "border lc rgb '#888888'\nset tics textcolor rgb '#444444'\nunset key\n",
-      model.description.name, gnuplot_palette(), worst);
+      model.description.name, drawn.title, gnuplot_palette(), range.min, range.max);
   for (size_t i = 0; i < maps.size(); ++i) {
     const SliceMap& map = maps[i];
     const double du = map.u_range.width() / std::max(1, map.nu - 1) * kMilli;
@@ -295,6 +344,7 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
   }
   const Description described = read_device(arguments);
   const Model model(without_hand_joints(described));
+  const Drawn drawn = drawn_of(arguments, model);
   const double asked = arguments.grid_given ? *grid.value : 0.0;
   if (!arguments.against.empty()) return compare(arguments, model, asked, terminal);
   if (const auto obstacle = workspace_obstacle(model.mechanism)) {
@@ -335,10 +385,13 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
       const std::lock_guard lock(mutex);
       progress.update(fraction * points, points);
     };
-    const WorkspaceMap map = map_workspace(model.mechanism, options, effort);
-    write_map(map, arguments.map);
+    WorkspaceMap map = map_workspace(model.mechanism, options, effort);
+    if (arguments.all && map.complete) add_mechanics(model.mechanism, model.drives, map, effort);
+    if (map.complete) write_map(map, arguments.map);
+    sweep.complete = map.complete;
   }
-  if (!arguments.figure.empty() && sweep.complete) draw(model, extents, options.limits, arguments.figure);
+  if (!arguments.figure.empty() && sweep.complete)
+    draw(model, extents, options.limits, drawn, arguments.figure);
   const WorkspaceVolume volume =
       sweep.complete ? finer_count(workspace_volume(model.mechanism, effort), sweep) : WorkspaceVolume{};
   const InscribedShapes inscribed = sweep.complete ? inscribed_shapes(model.mechanism) : InscribedShapes{};
@@ -377,7 +430,12 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
   const WorkspaceConditioning conditioning =
       sweep.complete ? sweep_conditioning(model.mechanism, 2.0 * options.spacing, {.cancel = effort.cancel})
                      : WorkspaceConditioning{};
-  if (sweep.complete) document["conditioning"] = conditioning_json(conditioning);
+  std::optional<MechanicalSweep> mechanics;
+  if (sweep.complete) mechanics = mechanics_of(model, extents, options.spacing, {.cancel = effort.cancel});
+  if (sweep.complete) {
+    document["conditioning"] = conditioning_json(conditioning);
+    document["mechanics"] = mechanics_json(*mechanics);
+  }
   Sheet sheet(terminal);
   std::vector<std::vector<std::string>> rows;
   read_figures(sweep, 3, arguments.all, driven, document, rows);
@@ -417,6 +475,7 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
     if (K.count > 0) sheet.row("nearest to isotropic", "K = " + number(K.min), "at " + point_text(K.min_at));
   }
   if (driven) sheet.paragraph("Forces with the continuous torque of the drives.", 2, Tint::dim);
+  if (mechanics) print_mechanics(*mechanics, false, sheet);
   if (!arguments.map.empty() && sweep.complete) sheet.paragraph("map: " + arguments.map, 2, Tint::dim);
   if (!arguments.figure.empty() && sweep.complete) sheet.paragraph("figure: " + arguments.figure, 2, Tint::dim);
   print(sheet.text());
@@ -432,6 +491,7 @@ void add_workspace(CLI::App& app, Context& context) {
       "  zwidth workspace delta --grid 0.5mm --all-figures\n"
       "  zwidth workspace delta --grid 2mm --map delta.csv         one row per point\n"
       "  zwidth workspace delta --figure delta.pdf                 cuts and surface (needs gnuplot)\n"
+      "  zwidth workspace r-cube --figure r-cube.svg --of softest  the same with the stiffness\n"
       "  zwidth workspace seven-dof --position 0.3,0,0.1           also how the tool can be turned there\n"
       "  zwidth workspace delta --set mechanism.forearm=\"170 mm\" --against delta\n"
       "\nCtrl-C stops with what there is, and exits 1.");
@@ -450,8 +510,14 @@ void add_workspace(CLI::App& app, Context& context) {
       ->type_name("FILE");
   verb->add_option("--figure", arguments->figure, "draw cuts and surface: FILE.svg, .png or .pdf")
       ->type_name("FILE");
-  verb->add_flag("--all-figures", arguments->all,
-                 "also polytope forces, resolution and distances to singularities");
+  verb->add_option("--of", arguments->of,
+                   "what --figure draws on the cuts: condition_number if not given, or another figure, such as "
+                   "softest, heaviest or frequency_held")
+      ->type_name("FIGURE");
+  verb->add_flag(
+      "--all-figures", arguments->all,
+      "also polytope forces, resolution and distances to singularities; in --map stiffness, apparent "
+      "mass and natural frequencies too, which take some 10 µs a point");
   verb->callback([arguments, grid, &context] {
     arguments->grid_given = grid->count() > 0;
     context.run = [arguments, &context] { return workspace(*arguments, context.terminal); };

@@ -4,6 +4,7 @@
 
 #include "gnuplot.h"
 #include "interrupt.h"
+#include "mechanics.h"
 #include "sheet_arm.h"
 #include "workspace_verb.h"
 
@@ -96,6 +97,8 @@ void print_turning(const Turning& turning, Sheet& sheet) {
 
 int arm_workspace(const WorkspaceArguments& arguments, const Model& model, double spacing,
                   const Terminal& terminal) {
+  if (arguments.of != "condition_number")
+    throw InputError(fmt::format("--of {}: is for tools that do not turn; leave it out", arguments.of));
   const Mechanism& mechanism = model.mechanism;
   ArmSheetOptions options{.reach_postures = 10'000'000, .reach_spacing = spacing};
   if (arguments.figure.empty()) options.slice_postures = 0;
@@ -126,6 +129,7 @@ int arm_workspace(const WorkspaceArguments& arguments, const Model& model, doubl
   }
   if (!arguments.figure.empty()) draw(model, reach, arguments.figure);
   const Turning turning = turning_of(arguments, mechanism, std::move(arm.orientations));
+  const MechanicalPostures mechanics = sweep_mechanics_of_postures(mechanism, model.drives);
 
   if (arguments.json) {
     Json document;
@@ -133,6 +137,7 @@ int arm_workspace(const WorkspaceArguments& arguments, const Model& model, doubl
     document["grid"] = json_number(reach.volume.spacing);
     document["complete"] = true;
     document.update(reach_json(arm));
+    document["mechanics"] = mechanics_json(mechanics);
     write_turning(turning, document);
     print_json(document);
     return kDone;
@@ -143,6 +148,7 @@ int arm_workspace(const WorkspaceArguments& arguments, const Model& model, doubl
                           readable(reach.volume.spacing, "m", 3)));
   for (const ArmFact& fact : reach_facts(arm)) sheet.row(fact.name, fact.value, fact.note);
   print_turning(turning, sheet);
+  print_mechanics(mechanics, sheet);
   if (!arguments.map.empty()) sheet.paragraph("map: " + arguments.map, 2, Tint::dim);
   if (!arguments.figure.empty()) sheet.paragraph("figure: " + arguments.figure, 2, Tint::dim);
   print(sheet.text());

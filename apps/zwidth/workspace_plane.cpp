@@ -5,6 +5,7 @@
 
 #include "gnuplot.h"
 #include "interrupt.h"
+#include "mechanics.h"
 #include "workspace_verb.h"
 
 #include "zwidth/analysis/data_sheet.h"
@@ -14,18 +15,22 @@ namespace zwidth {
 
 namespace {
 
-/// The condition number over the plane, with the lines of K = 5, 10 and 100 and the largest circle and square.
-void draw(const Model& model, const Extents& extents, const InscribedShapes& inscribed,
+/// A figure over the plane, with the largest circle and square, the condition number with the lines of K = 5,
+/// 10 and 100.
+void draw(const Model& model, const Extents& extents, const InscribedShapes& inscribed, const Drawn& drawn,
           const std::string& path) {
-  const SliceMap map = map_slice(model.mechanism, extents, 2, 0.0, 321, {});
+  const bool condition = !drawn.mechanical && static_cast<Figure>(drawn.index) == Figure::condition_number;
+  const SliceMap map =
+      map_slice(model.mechanism, extents, 2, 0.0, condition ? 321 : 161, drive_limits(model.drives, false));
+  const std::vector<double> values = drawn_values(drawn, model, map);
   const double width = map.u_range.width(), height = map.v_range.width();
   const double sheet_width = 760.0;
   std::string script =
       gnuplot_terminal(path, sheet_width, std::round((sheet_width - 190.0) * height / width + 110.0));
-  script += gnuplot_block(map.values[static_cast<size_t>(Figure::condition_number)], map.nu, "map");
+  script += gnuplot_block(values, map.nu, "map");
   script += gnuplot_outlines(map.slice, "edge");
   std::string lines;
-  for (const double limit : {5.0, 10.0, 100.0}) {
+  for (const double limit : condition ? std::vector{5.0, 10.0, 100.0} : std::vector<double>{}) {
     const std::string name = fmt::format("k{:.0f}", limit);
     script += gnuplot_outlines(condition_region(model.mechanism, map, limit), name);
     lines += fmt::format(", ${} using 1:2 with lines lc rgb '#ffffff' lw 0.8 notitle", name);
@@ -45,10 +50,15 @@ void draw(const Model& model, const Extents& extents, const InscribedShapes& ins
   script += "EOD\n";
   const double du = width / (map.nu - 1) * kMilli, dv = height / (map.nv - 1) * kMilli;
   script += gnuplot_palette();
+  if (condition) {
+    script +=
+        "set logscale cb\nset cbrange [1:100]\nset cbtics (1, 2, 5, 10, 20, 50, 100)\nset cblabel 'condition "
+        "number, lines at 5, 10 and 100'\n";
+  } else {
+    const Interval range = drawn_range({values});
+    script += fmt::format("set cbrange [{:g}:{:g}]\nset cblabel '{}'\n", range.min, range.max, drawn.title);
+  }
   script += fmt::format(
-      "set logscale cb\nset cbrange [1:100]\nset cbtics (1, 2, 5, 10, 20, 50, 100)\nset cblabel 'condition "
-      "number, "
-      "lines at 5, 10 and 100'\n"
       "set size ratio -1\nset grid front lc rgb '#dddddd'\nset border lc rgb '#888888'\nset tics textcolor rgb "
       "'#444444'\nunset key\nset title 'Workspace of {}'\nset xlabel 'x [mm]'\nset ylabel 'y [mm]'\n"
       "set xrange [{:g}:{:g}]\nset yrange [{:g}:{:g}]\n"
@@ -98,16 +108,21 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
   InscribedShapes inscribed;
   DexterousRegion dexterous;
   WorkspaceConditioning conditioning;
+  std::optional<MechanicalSweep> mechanics;
   if (sweep.complete) {
     if (!arguments.map.empty()) {
-      const WorkspaceMap map = map_workspace(mechanism, options, effort);
-      write_map(map, arguments.map);
+      WorkspaceMap map = map_workspace(mechanism, options, effort);
+      if (arguments.all && map.complete) add_mechanics(mechanism, model.drives, map, effort);
+      if (map.complete) write_map(map, arguments.map);
     }
     area = workspace_volume(mechanism, effort);
     inscribed = inscribed_shapes(mechanism);
     dexterous = dexterous_region(mechanism, extents);
     conditioning = sweep_conditioning(mechanism, spacing, effort);
-    if (!arguments.figure.empty()) draw(model, extents, inscribed, arguments.figure);
+    mechanics = mechanics_of(model, extents, spacing, effort);
+    document["mechanics"] = mechanics_json(*mechanics);
+    if (!arguments.figure.empty())
+      draw(model, extents, inscribed, drawn_of(arguments, model), arguments.figure);
     document["area"] = json_number(area.value);
     document["area_method"] = to_string(area.method);
     document["area_error"] = json_number(area.error_estimate);
@@ -171,6 +186,7 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
       sheet.row("nearest to isotropic", "K = " + number(K.min), "at " + plane_point_text(K.min_at));
   }
   if (model.driven()) sheet.paragraph("Forces with the continuous torque of the drives.", 2, Tint::dim);
+  if (mechanics) print_mechanics(*mechanics, true, sheet);
   if (!arguments.map.empty() && sweep.complete) sheet.paragraph("map: " + arguments.map, 2, Tint::dim);
   if (!arguments.figure.empty() && sweep.complete) sheet.paragraph("figure: " + arguments.figure, 2, Tint::dim);
   print(sheet.text());

@@ -9,6 +9,7 @@
 #include "sheet_json.h"
 
 #include "zwidth/analysis/conditioning.h"
+#include "zwidth/analysis/mechanical.h"
 #include "zwidth/mechanism/plane_figure.h"
 
 /// Parts of the verb `workspace`, which looks different for tools in space and in a plane.
@@ -22,6 +23,7 @@ struct WorkspaceArguments : DeviceArguments {
   std::string map;
   std::string figure;
   std::string position;
+  std::string of = "condition_number";
   bool all = false;
 };
 
@@ -54,6 +56,22 @@ void read_figures(const LatticeSweep& sweep, int dimension, bool all, bool drive
                   std::vector<std::vector<std::string>>& rows);
 /// `whole`: what shares are of, "area".
 void print_conditioning(const GlobalConditioning& conditioning, const char* whole, Sheet& sheet);
+/// What `--of` asks to draw: a figure of the Jacobian or a mechanical one.
+struct Drawn {
+  bool mechanical = false;
+  int index = 0;      ///< of the figure
+  std::string title;  ///< with its unit
+  double factor = 1.0;
+};
+/// InputError if there is no such figure, or none for the device.
+Drawn drawn_of(const WorkspaceArguments& arguments, const Model& model);
+/// Its values on a cut, in the order of the grid.
+std::vector<double> drawn_values(const Drawn& drawn, const Model& model, const SliceMap& map);
+/// Of the values on all cuts, without the few near singularities.
+Interval drawn_range(const std::vector<std::vector<double>>& cuts);
+/// A coarse lattice, so that it takes a moment.
+MechanicalSweep mechanics_of(const Model& model, const Extents& extents, double spacing, const Effort& effort);
+
 /// As .npy or .csv, by the name. Throws MachineError.
 void write_map(const WorkspaceMap& map, const std::string& path);
 

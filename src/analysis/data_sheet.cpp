@@ -165,20 +165,6 @@ bool has_mass(const Mechanism& mechanism) {
   return mass > 0.0;
 }
 
-// The spacing, or the next of 1, 2, 5, 10, ... times a power of ten of which few enough points lie in the box.
-double fitting(const Extents& extents, double spacing, double most_points) {
-  const auto points = [&](double h) {
-    const Vector3 size = extents.size();
-    return (size.x() / h + 1.0) * (size.y() / h + 1.0) * (size.z() / h + 1.0);
-  };
-  while (points(spacing) > most_points) {
-    const double power = std::pow(10.0, std::floor(std::log10(spacing) + 1e-9));
-    const double digit = spacing / power;
-    spacing = power * (digit < 1.999 ? 2.0 : digit < 4.999 ? 5.0 : 10.0);
-  }
-  return spacing;
-}
-
 std::optional<PostureSheet> middle_posture(const Mechanism& mechanism, const DataSheet& sheet,
                                            const std::vector<std::optional<Drive>>& drives, bool driven) {
   ActiveVector active(mechanism.active_count());
@@ -401,9 +387,9 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
   const double most = batch  ? options.most_points
                       : fast ? 0.1 * options.most_points
                              : options.most_costly_points;
-  const double spacing = fitting(extents, std::max(options.spacing, least), most);
+  const double spacing = fitting_spacing(extents, std::max(options.spacing, least), most);
   const double inertia_spacing =
-      fitting(extents, std::max(options.inertia_spacing, least), options.most_costly_points);
+      fitting_spacing(extents, std::max(options.inertia_spacing, least), options.most_costly_points);
   const DriveLimits limits = drive_limits(drives, false);
   const LatticeOptions lattice{.spacing = spacing, .limits = limits, .all_figures = true};
 
@@ -448,6 +434,22 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
     sheet.inertia = sweep_inertia(mechanism, inertia_spacing,
                                   {.threads = options.effort.threads, .cancel = options.effort.cancel});
     sheet.complete = sheet.complete && sheet.inertia->complete;
+  }
+  if (has_mass(mechanism) || sheet.stiffness) {
+    constexpr double kFewer = 0.2;  // of the points for inertia alone
+    MechanicsSheet mechanics;
+    const Effort effort{.threads = options.effort.threads, .cancel = options.effort.cancel};
+    mechanics.sweep =
+        sweep_mechanics(mechanism, drives,
+                        fitting_spacing(extents, inertia_spacing, kFewer * options.most_costly_points), effort);
+    const auto add = [&](const SliceMap& map) {
+      if (map.nu > 1 && map.nv > 1) mechanics.cuts.push_back(cut_mechanics(mechanism, drives, map, 2, effort));
+    };
+    if (in_plane) add(sheet.plane->map);
+    for (int axis = 0; axis < 3 && !in_plane; ++axis)
+      add(sheet.workspace->slices[static_cast<std::size_t>(axis)]);
+    sheet.complete = sheet.complete && mechanics.sweep.complete;
+    sheet.mechanics = std::move(mechanics);
   }
   sheet.middle = middle_posture(mechanism, sheet, drives, driven);
   if (!sheet.middle) sheet.warnings.push_back("The loops do not close in the middle of the joint ranges.");

@@ -12,6 +12,7 @@
 #include "zwidth/analysis/five_bar_curves.h"
 #include "zwidth/analysis/force.h"
 #include "zwidth/analysis/inertia.h"
+#include "zwidth/analysis/mechanical.h"
 #include "zwidth/analysis/resolution.h"
 #include "zwidth/analysis/stiffness_sheet.h"
 #include "zwidth/analysis/workspace.h"
@@ -131,6 +132,13 @@ struct PlaneSheet {
   std::vector<FiveBarCurve> singular_curves;  ///< of a five-bar in its own working mode, at any crank angles
 };
 
+/// How stiff and how heavy a tool that does not turn feels over its workspace.
+struct MechanicsSheet {
+  MechanicalSweep sweep;
+  std::vector<MechanicalCut>
+      cuts;  ///< those of the workspace's maps: normal to x, y and z; the plane of a plane
+};
+
 struct DataSheet {
   // Identity
   std::string name;
@@ -158,6 +166,7 @@ struct DataSheet {
   ActiveVector torque_resolution;  ///< torque of one current step, per active joint [N m]; 0 if not given
 
   std::optional<StiffnessSheet> stiffness;            ///< empty where the source does not give enough
+  std::optional<MechanicsSheet> mechanics;            ///< empty where neither that nor any mass is known
   std::vector<DriveSheet> drives;                     ///< in the order of the description
   std::vector<PneumaticDriveSheet> pneumatic_drives;  ///< in the order of the joints
   std::vector<std::string> warnings;  ///< sentences for a person: failed margins, what could not be computed

@@ -31,6 +31,7 @@ std::vector<std::string> WorkspaceMap::columns() const {
   std::vector<std::string> names = {"x", "y", "z"};
   names.resize(static_cast<std::size_t>(dimension));
   for (const Figure which : defined) names.emplace_back(figure_info(static_cast<int>(which)).name);
+  names.insert(names.end(), more_names.begin(), more_names.end());
   return names;
 }
 
@@ -46,6 +47,10 @@ void write_csv(const WorkspaceMap& map, std::ostream& out) {
     for (const Figure which : map.defined) {
       out << ',';
       write_number(figure(map.figures[p], which), out);
+    }
+    for (std::size_t c = 0; c < map.more_names.size(); ++c) {
+      out << ',';
+      write_number(map.more[p * map.more_names.size() + c], out);
     }
     out << '\n';
   }
@@ -64,6 +69,8 @@ void write_npy(const WorkspaceMap& map, std::ostream& out) {
   for (std::size_t p = 0; p < map.positions.size(); ++p) {
     for (int axis = 0; axis < map.dimension; ++axis) write_double(map.positions[p][axis], out);
     for (const Figure which : map.defined) write_double(figure(map.figures[p], which), out);
+    for (std::size_t c = 0; c < map.more_names.size(); ++c)
+      write_double(map.more[p * map.more_names.size() + c], out);
   }
 }
 

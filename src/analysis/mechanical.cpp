@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -73,6 +74,16 @@ void put_masses(const Mechanism& mechanism, const ToolMatrix& mobility, Mechanic
     put(values, MechanicalFigure::mass_x, mechanism.tool_axes()[static_cast<std::size_t>(r)], mass(W(r, r)));
   put(values, MechanicalFigure::lightest, 0, mass(range.max));
   put(values, MechanicalFigure::heaviest, 0, mass(range.min));
+}
+
+// What gives: the same in every posture.
+std::optional<Elasticity> elasticity_of(const Mechanism& mechanism, const Drives& drives) {
+  for (std::int64_t sample = 0; sample < 100; ++sample) {
+    const Solution solution = solve_forward(mechanism, spread_posture(mechanism, sample));
+    if (!solution) continue;
+    if (const auto known = known_stiffness(*solution.posture, drives)) return known->of;
+  }
+  return std::nullopt;
 }
 
 struct Builders {
@@ -181,6 +192,8 @@ MechanicalSweep sweep_mechanics(const Mechanism& mechanism, const Drives& drives
     for (std::size_t f = 0; f < kMechanicalFigureCount; ++f) total.figures[f].add(plane.figures[f]);
   }
   sweep.inside = total.inside;
+  if (total.figures[static_cast<std::size_t>(MechanicalFigure::softest)].result().count > 0)
+    sweep.of = elasticity_of(mechanism, drives);
   for (std::size_t f = 0; f < kMechanicalFigureCount; ++f) sweep.figures[f] = total.figures[f].result();
   return sweep;
 }
@@ -218,7 +231,77 @@ MechanicalPostures sweep_mechanics_of_postures(const Mechanism& mechanism, const
       if (std::isfinite(values[f])) internal::add(sweep.figures[f], values[f], at);
     }
   }
+  if (sweep[MechanicalFigure::softest].count > 0) sweep.of = elasticity_of(mechanism, drives);
   return sweep;
+}
+
+MechanicalCut cut_mechanics(const Mechanism& mechanism, const Drives& drives, const SliceMap& map, int stride,
+                            const Effort& effort) {
+  assert(stride > 0);
+  MechanicalCut cut;
+  cut.slice = map.slice;
+  cut.nu = map.nu > 0 ? (map.nu - 1) / stride + 1 : 0;
+  cut.nv = map.nv > 0 ? (map.nv - 1) / stride + 1 : 0;
+  const auto at = [stride](const Interval& range, int count, int index) {
+    return range.min + (count > 1 ? range.width() * index * stride / (count - 1) : 0.0);
+  };
+  cut.u_range = {at(map.u_range, map.nu, 0), at(map.u_range, map.nu, cut.nu - 1)};
+  cut.v_range = {at(map.v_range, map.nv, 0), at(map.v_range, map.nv, cut.nv - 1)};
+  const auto size = static_cast<std::size_t>(cut.nu) * static_cast<std::size_t>(cut.nv);
+  std::vector<Vector3> points;
+  std::vector<std::size_t> places;
+  for (int v = 0; v < cut.nv; ++v) {
+    for (int u = 0; u < cut.nu; ++u) {
+      const auto of_map = static_cast<std::size_t>(v * stride) * static_cast<std::size_t>(map.nu) +
+                          static_cast<std::size_t>(u * stride);
+      if (std::isnan(map.values[static_cast<std::size_t>(Figure::condition_number)][of_map])) continue;
+      Vector3& point = points.emplace_back();
+      point[map.slice.axis] = map.slice.at;
+      point[map.slice.u] = at(map.u_range, map.nu, u);
+      point[map.slice.v] = at(map.v_range, map.nv, v);
+      places.push_back(static_cast<std::size_t>(v) * static_cast<std::size_t>(cut.nu) +
+                       static_cast<std::size_t>(u));
+    }
+  }
+  for (std::vector<double>& values : cut.values) values.assign(size, kUnknown);
+  const std::vector<MechanicalValues> found = map_mechanics(mechanism, drives, points, effort);
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    for (std::size_t f = 0; f < kMechanicalFigureCount; ++f) cut.values[f][places[p]] = found[p][f];
+  }
+  return cut;
+}
+
+void add_mechanics(const Mechanism& mechanism, const Drives& drives, WorkspaceMap& map, const Effort& effort) {
+  const std::vector<MechanicalValues> found = map_mechanics(mechanism, drives, map.positions, effort);
+  if (found.size() != map.positions.size()) {
+    map.complete = false;
+    return;
+  }
+  std::vector<std::size_t> known;
+  for (std::size_t f = 0; f < kMechanicalFigureCount; ++f) {
+    const auto has = [f](const MechanicalValues& values) { return !std::isnan(values[f]); };
+    if (!std::any_of(found.begin(), found.end(), has)) continue;
+    known.push_back(f);
+    map.more_names.emplace_back(mechanical_figure_info(static_cast<int>(f)).name);
+  }
+  map.more.reserve(known.size() * found.size());
+  for (const MechanicalValues& values : found) {
+    for (const std::size_t f : known) map.more.push_back(values[f]);
+  }
+}
+
+double fitting_spacing(const Extents& extents, double least, double most_points) {
+  const auto points = [&](double h) {
+    const Vector3 size = extents.size();
+    return (size.x() / h + 1.0) * (size.y() / h + 1.0) * (size.z() / h + 1.0);
+  };
+  double spacing = least;
+  while (points(spacing) > most_points) {
+    const double power = std::pow(10.0, std::floor(std::log10(spacing) + 1e-9));
+    const double digit = spacing / power;
+    spacing = power * (digit < 1.999 ? 2.0 : digit < 4.999 ? 5.0 : 10.0);
+  }
+  return spacing;
 }
 
 }  // namespace zwidth

@@ -60,6 +60,7 @@ struct MechanicalSweep {
   double spacing = 0.0;  ///< [m]
   std::int64_t inside = 0;
   bool complete = true;
+  std::optional<Elasticity> of;  ///< what gives; nothing if the source does not say
   std::array<Statistic, kMechanicalFigureCount> figures;
 
   const Statistic& operator[](MechanicalFigure which) const { return figures[static_cast<int>(which)]; }
@@ -73,9 +74,34 @@ MechanicalSweep sweep_mechanics(const Mechanism& mechanism, const Drives& drives
 std::vector<MechanicalValues> map_mechanics(const Mechanism& mechanism, const Drives& drives,
                                             std::span<const Vector3> positions, const Effort& effort = {});
 
+/// Figures on the grid of a cut through the workspace, or on every `stride`-th line of it.
+struct MechanicalCut {
+  Slice slice;
+  int nu = 0, nv = 0;
+  Interval u_range, v_range;                                         ///< of the grid points [m]
+  std::array<std::vector<double>, kMechanicalFigureCount> values{};  ///< [figure][iv * nu + iu], NaN outside
+
+  const std::vector<double>& operator[](MechanicalFigure which) const {
+    return values[static_cast<std::size_t>(which)];
+  }
+};
+/// `map` of this mechanism, from `map_slice`. REQUIRES: stride > 0.
+MechanicalCut cut_mechanics(const Mechanism& mechanism, const Drives& drives, const SliceMap& map, int stride,
+                            const Effort& effort = {});
+
+/// Adds to a map a column for every figure that has a value somewhere in it. The map is left as it is if that
+/// was cancelled, and says so.
+void add_mechanics(const Mechanism& mechanism, const Drives& drives, WorkspaceMap& map,
+                   const Effort& effort = {});
+
+/// A lattice spacing not below `least` with which a box around the workspace has at most `most_points` points:
+/// 1, 2 or 5 times a power of ten, or `least` [m].
+double fitting_spacing(const Extents& extents, double least, double most_points);
+
 /// Over postures spread evenly over the joint ranges: for tools that also turn.
 struct MechanicalPostures {
-  std::int64_t solved = 0;  ///< of them the loops closed
+  std::int64_t solved = 0;       ///< of them the loops closed
+  std::optional<Elasticity> of;  ///< what gives; nothing if the source does not say
   std::array<PostureStatistic, kMechanicalFigureCount> figures;
 
   const PostureStatistic& operator[](MechanicalFigure which) const { return figures[static_cast<int>(which)]; }

@@ -74,12 +74,14 @@ LatticeSweep sweep_workspace(const Mechanism& mechanism, const LatticeOptions& o
 struct WorkspaceMap {
   double spacing = 0.0;  ///< [m]
   bool complete = true;
-  int dimension = 3;                  ///< 2 for a tool in a plane
-  std::vector<Figure> defined;        ///< figures that were asked for and are defined
-  std::vector<Vector3> positions;     ///< by x, then y, then z, ascending [m]
-  std::vector<FigureValues> figures;  ///< of each position
+  int dimension = 3;                    ///< 2 for a tool in a plane
+  std::vector<Figure> defined;          ///< figures that were asked for and are defined
+  std::vector<Vector3> positions;       ///< by x, then y, then z, ascending [m]
+  std::vector<FigureValues> figures;    ///< of each position
+  std::vector<std::string> more_names;  ///< of further columns
+  std::vector<double> more;             ///< their values, position after position; NaN where there is none
 
-  /// "x", "y", in space "z", and the names of the defined figures.
+  /// "x", "y", in space "z", the names of the defined figures and those of the further columns.
   std::vector<std::string> columns() const;
 };
 WorkspaceMap map_workspace(const Mechanism& mechanism, const LatticeOptions& options,

@@ -1,7 +1,9 @@
 #include "zwidth/analysis/mechanical.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <sstream>
 
 #include "support/r_cubes.h"
 
@@ -154,6 +156,60 @@ TEST(Mechanical, FrequenciesFallWithTheSquareRootOfTheMass) {
     EXPECT_NEAR(figure(heavy, which) / figure(light, which), 4.0, 1e-9);
   EXPECT_EQ(figure(light, MechanicalFigure::softest), figure(heavy, MechanicalFigure::softest));
   EXPECT_GT(figure(light, MechanicalFigure::frequency_free), figure(light, MechanicalFigure::frequency_held));
+}
+
+TEST(Mechanical, ACutHasTheFiguresOfItsPoints) {
+  for (const char* name : {"r-cube", "five-bar"}) {
+    const Device device(name);
+    const Extents extents = workspace_extents(device.mechanism);
+    const SliceMap map = map_slice(device.mechanism, extents, 2, extents.range[2].middle(), 21, {});
+    const MechanicalCut all = cut_mechanics(device.mechanism, device.drives, map, 1),
+                        every_second = cut_mechanics(device.mechanism, device.drives, map, 2);
+    EXPECT_EQ(all.nu, map.nu);
+    EXPECT_EQ(every_second.nu, (map.nu + 1) / 2);
+    EXPECT_DOUBLE_EQ(all.u_range.max, map.u_range.max);
+    const auto& heaviest = all[MechanicalFigure::heaviest];
+    const auto& coarse = every_second[MechanicalFigure::heaviest];
+    int inside = 0;
+    for (int v = 0; v < every_second.nv; ++v) {
+      for (int u = 0; u < every_second.nu; ++u) {
+        const double value = coarse[static_cast<std::size_t>(v * every_second.nu + u)],
+                     same = heaviest[static_cast<std::size_t>(2 * v * all.nu + 2 * u)];
+        if (std::isnan(value)) {
+          EXPECT_TRUE(std::isnan(same));
+          continue;
+        }
+        ++inside;
+        EXPECT_NEAR(value / same, 1.0, 1e-9);
+        Vector3 point;
+        point[map.slice.axis] = map.slice.at;
+        point[map.slice.u] =
+            every_second.u_range.min + every_second.u_range.width() * u / (every_second.nu - 1);
+        point[map.slice.v] =
+            every_second.v_range.min + every_second.v_range.width() * v / (every_second.nv - 1);
+        const auto one = map_mechanics(device.mechanism, device.drives, std::span(&point, 1));
+        EXPECT_NEAR(value / figure(one[0], MechanicalFigure::heaviest), 1.0, 1e-7);
+      }
+    }
+    EXPECT_GT(inside, 20) << name;
+  }
+}
+
+TEST(Mechanical, AMapHasAColumnForWhatIsKnown) {
+  const Device device("five-bar");
+  WorkspaceMap map = map_workspace(device.mechanism, {.spacing = 0.02});
+  const std::size_t before = map.columns().size();
+  add_mechanics(device.mechanism, device.drives, map);
+  // Masses along two axes and in two directions; no stiffness.
+  EXPECT_EQ(map.columns().size(), before + 4);
+  EXPECT_EQ(map.columns()[before], "mass_x");
+  EXPECT_EQ(map.more.size(), 4 * map.positions.size());
+  std::ostringstream csv;
+  write_csv(map, csv);
+  const std::string text = csv.str();
+  const std::string first =
+      text.substr(text.find('\n') + 1, text.find('\n', text.find('\n') + 1) - text.find('\n') - 1);
+  EXPECT_EQ(static_cast<std::size_t>(std::count(first.begin(), first.end(), ',')) + 1, before + 4);
 }
 
 }  // namespace

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model.h"
+#include "sheet_figures.h"
+#include "sheet_json.h"
+#include "terminal.h"
+
+#include "zwidth/analysis/mechanical.h"
+
+/// Stiffness, apparent mass and natural frequencies over a workspace, for people and as JSON.
+
+namespace zwidth {
+
+/// "N/mm", "g", "Hz", with the factor from SI.
+struct ShownUnit {
+  const char* unit;
+  double factor;
+};
+ShownUnit shown_unit(MechanicalFigure which);
+
+/// A row of least, mean and largest per figure that is known.
+std::vector<std::vector<std::string>> mechanics_rows(const MechanicalSweep& sweep);
+std::vector<std::vector<std::string>> mechanics_rows(const MechanicalPostures& sweep);
+/// Where the tool is softest and heaviest, and where it vibrates slowest: name, value and place.
+struct MechanicsPlace {
+  std::string name, value, place;
+};
+std::vector<MechanicsPlace> mechanics_places(const MechanicalSweep& sweep, bool in_plane);
+/// Sentences: what gives, and what the source does not give.
+std::vector<std::string> mechanics_notes(const std::optional<Elasticity>& of, bool masses, bool frequencies);
+
+/// Heading, table, places and notes.
+void print_mechanics(const MechanicalSweep& sweep, bool in_plane, Sheet& sheet);
+void print_mechanics(const MechanicalPostures& sweep, Sheet& sheet);
+
+Json mechanics_json(const MechanicalSweep& sweep);
+Json mechanics_json(const MechanicalPostures& sweep);
+
+/// Maps of the heaviest direction, the softest one and the lowest frequency on the cuts, as far as they are
+/// known.
+std::vector<SheetFigure> mechanics_figures(const std::vector<MechanicalCut>& cuts);
+
+}  // namespace zwidth

@@ -262,6 +262,116 @@ std::vector<ArmFact> orientation_facts(const std::optional<OrientationWorkspace>
   return facts;
 }
 
+namespace {
+
+/// Volume, area or length with its error, by how many axes there are.
+std::string measure_text(double value, double error, int dimension) {
+  const double factor = dimension == 3 ? 1e6 : dimension == 2 ? 1e4 : kMilli;
+  const char* unit = dimension == 3 ? "cm³" : dimension == 2 ? "cm²" : "mm";
+  return fmt::format("{} ± {}", quantity(value, factor, unit, 5), quantity(error, factor, unit, 2));
+}
+
+}  // namespace
+
+std::string orientation_text(const Matrix3& rotation) {
+  // R = Rz(yaw) Ry(pitch) Rx(roll), as --orientation has it.
+  const double pitch = std::atan2(-rotation(2, 0), std::hypot(rotation(0, 0), rotation(1, 0)));
+  const bool upright = std::hypot(rotation(0, 0), rotation(1, 0)) > 1e-9;
+  const double roll = upright ? std::atan2(rotation(2, 1), rotation(2, 2)) : 0.0;
+  const double yaw =
+      upright ? std::atan2(rotation(1, 0), rotation(0, 0)) : std::atan2(-rotation(0, 1), rotation(1, 1));
+  const auto degrees = [](double angle) { return trimmed(std::abs(angle) < 1e-9 ? 0.0 : angle * kDegrees, 5); };
+  return fmt::format("roll {}°, pitch {}°, yaw {}°", degrees(roll), degrees(pitch), degrees(yaw));
+}
+
+namespace {
+
+/// Where the search of a conditioning ended best.
+std::string place_text(const PoseWorkspace& workspace, const Vector3& place) {
+  return workspace.axes == std::vector<int>{0, 1} ? plane_point_text(place) : point_text(place);
+}
+
+/// In a plane an orientation is one angle.
+std::string orientation_words(const Matrix3& rotation, bool in_plane) {
+  const double yaw = std::atan2(rotation(1, 0), rotation(0, 0));
+  return in_plane ? fmt::format("{}° about z", trimmed(std::abs(yaw) < 1e-9 ? 0.0 : yaw * kDegrees, 5))
+                  : orientation_text(rotation);
+}
+
+}  // namespace
+
+std::vector<ArmFact> pose_facts(const PoseWorkspace& workspace) {
+  std::vector<ArmFact> facts;
+  const int n = workspace.dimension();
+  const bool in_plane = workspace.axes == std::vector<int>{0, 1};
+  const std::string orientation = orientation_words(workspace.orientation, in_plane);
+  if (!workspace.reached) return {{"orientation", "not reached", orientation}};
+  facts.push_back({"orientation", orientation, "of the tool, kept"});
+  if (n == 0) return facts;
+  if (workspace.unbounded) {
+    facts.push_back({"workspace", "unbounded", "nothing ends it: give the sliding joints ranges"});
+    return facts;
+  }
+  facts.push_back(
+      {n == 3   ? "volume"
+       : n == 2 ? "area"
+                : "length",
+       measure_text(workspace.measure, workspace.error_estimate, n),
+       fmt::format("{} points of a lattice of {}", workspace.inside, readable(workspace.spacing, "m", 3))});
+  for (const int axis : workspace.axes) {
+    const Interval& range = workspace.range[static_cast<size_t>(axis)];
+    facts.push_back({fmt::format("range of {}", kAxes[axis]), interval(range.min, range.max, kMilli, "mm"),
+                     quantity(range.width(), kMilli, "mm wide")});
+  }
+  if (n > 1) {
+    const InscribedShapes& inscribed = workspace.inscribed;
+    facts.push_back({n == 3 ? "largest sphere" : "largest circle",
+                     fmt::format("{} diameter", quantity(2.0 * inscribed.sphere.size, kMilli, "mm")),
+                     "centre " + place_text(workspace, inscribed.sphere.centre)});
+    facts.push_back({n == 3 ? "largest cube" : "largest square",
+                     fmt::format("{} edge", quantity(inscribed.cube.size, kMilli, "mm")),
+                     "centre " + place_text(workspace, inscribed.cube.centre)});
+  }
+  const auto conditioning = [&](const char* name, const PoseConditioning& part, const std::string& of) {
+    if (part.figure.count == 0) return;
+    facts.push_back({name, number(part.of_all.index(), 4), of});
+    facts.push_back({"  nearest to isotropic", fmt::format("K = {}", number(1.0 / part.figure.max)),
+                     "at " + place_text(workspace, part.figure.max_at)});
+    facts.push_back({"  share by K", "", shares_by_class(part.of_all)});
+  };
+  conditioning("conditioning, translation", workspace.translation, "mean of 1/(condition number K), 1 is best");
+  conditioning("conditioning, rotation", workspace.rotation, "");
+  if (workspace.homogeneous.figure.count > 0) {
+    conditioning("conditioning, both", workspace.homogeneous,
+                 fmt::format("a radian counts as {}", readable(workspace.characteristic_length, "m", 3)));
+  }
+  return facts;
+}
+
+std::vector<ArmFact> turning_facts(const TurningRange& turning) {
+  const bool in_plane = !turning.about[0] && !turning.about[1];
+  const std::string from = orientation_words(turning.orientation, in_plane);
+  const std::string where =
+      "at " + (in_plane ? plane_point_text(turning.position) : point_text(turning.position));
+  if (!turning.reached) return {{"place", "not reached", where + ", in " + from}};
+  std::vector<ArmFact> facts;
+  for (int k = 0; k < 3; ++k) {
+    const std::optional<Interval>& range = turning.about[static_cast<size_t>(k)];
+    if (!range) continue;
+    const bool whole = range->width() > 6.2831;
+    facts.push_back({fmt::format("turns about {}", kAxes[k]),
+                     whole ? "all round" : interval(range->min, range->max, kDegrees, "°"),
+                     facts.empty() ? where + ", from " + from : std::string(whole ? "" : "alone")});
+  }
+  if (turning.share && facts.size() == 3) {
+    facts.push_back(
+        {"orientations",
+         fmt::format("{} % ± {}", number(100.0 * *turning.share, 3), number(100.0 * turning.share_error, 2)),
+         "of all, about any axis, without leaving the workspace between"});
+  }
+  return facts;
+}
+
 std::vector<ArmFact> home_facts(const ArmSheet& arm, const Mechanism& mechanism) {
   std::vector<ArmFact> facts;
   if (!arm.home) return facts;
@@ -334,6 +444,56 @@ Json reach_json(const ArmSheet& arm) {
   entry["ranges"] = ranges_json(arm);
   entry["farthest"] = farthest_json(arm.farthest);
   entry["conditioning"] = conditioning_json(arm.continuous);
+  return entry;
+}
+
+Json pose_json(const PoseWorkspace& workspace) {
+  Json entry;
+  const int n = workspace.dimension();
+  entry["orientation"] = json_array(workspace.orientation);
+  entry["reached"] = workspace.reached;
+  entry["grid"] = nullptr;
+  const char* measure = n == 3 ? "volume" : n == 2 ? "area" : "length";
+  if (workspace.inside > 0) {
+    entry["grid"] = json_number(workspace.spacing);
+    entry["inside"] = workspace.inside;
+    entry[measure] = json_number(workspace.measure);
+    entry[std::string(measure) + "_error"] = json_number(workspace.error_estimate);
+    Json ranges;
+    for (const int axis : workspace.axes)
+      ranges[kAxes[axis]] = json_interval(workspace.range[static_cast<size_t>(axis)]);
+    entry["ranges"] = ranges;
+    if (n > 1) {
+      entry[n == 3 ? "inscribed_sphere" : "inscribed_circle"] = {
+          {"centre", json_array(workspace.inscribed.sphere.centre)},
+          {"radius", json_number(workspace.inscribed.sphere.size)}};
+      entry[n == 3 ? "inscribed_cube" : "inscribed_square"] = {
+          {"centre", json_array(workspace.inscribed.cube.centre)},
+          {"edge", json_number(workspace.inscribed.cube.size)}};
+    }
+    const auto conditioning = [](const PoseConditioning& part) -> Json {
+      if (part.figure.count == 0) return nullptr;
+      Json json = conditioning_json(part.of_all);
+      json["best_at"] = json_array(part.figure.max_at);
+      json["worst_at"] = json_array(part.figure.min_at);
+      return json;
+    };
+    entry["conditioning"] = {{"translation", conditioning(workspace.translation)},
+                             {"rotation", conditioning(workspace.rotation)},
+                             {"homogeneous", conditioning(workspace.homogeneous)},
+                             {"characteristic_length", json_number(workspace.characteristic_length)}};
+  }
+  const TurningRange& turning = workspace.turning;
+  Json about;
+  for (int k = 0; k < 3; ++k) {
+    const auto& range = turning.about[static_cast<size_t>(k)];
+    about[kAxes[k]] = range ? json_interval(*range) : Json(nullptr);
+  }
+  entry["turning"] = {{"position", json_array(turning.position)},
+                      {"reached", turning.reached},
+                      {"about", about},
+                      {"share", turning.share ? json_number(*turning.share) : Json(nullptr)},
+                      {"error", turning.share ? json_number(turning.share_error) : Json(nullptr)}};
   return entry;
 }
 

@@ -48,12 +48,18 @@ std::optional<PlaceOrientations> home_turning(const ArmSheet& arm);
 /// How the tool can be turned, at one place and over all; empty for arms that have no choice.
 std::vector<ArmFact> orientation_facts(const std::optional<OrientationWorkspace>& workspace,
                                        const std::optional<PlaceOrientations>& place);
+/// Where a platform that turns can be in one orientation, and how it can be turned at one place.
+std::vector<ArmFact> pose_facts(const PoseWorkspace& workspace);
+std::vector<ArmFact> turning_facts(const TurningRange& turning);
+/// An orientation as roll, pitch and yaw.
+std::string orientation_text(const Matrix3& rotation);
 /// The home posture.
 std::vector<ArmFact> home_facts(const ArmSheet& arm, const Mechanism& mechanism);
 
 Json arm_json(const ArmSheet& arm);
 /// Where the tool point can be, and how well conditioned: what `workspace` says. REQUIRES: arm.reach.
 Json reach_json(const ArmSheet& arm);
+Json pose_json(const PoseWorkspace& workspace);
 Json orientations_json(const std::optional<OrientationWorkspace>& workspace);
 Json place_json(const PlaceOrientations& place);
 

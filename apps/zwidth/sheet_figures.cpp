@@ -235,11 +235,15 @@ std::optional<SheetFigure> device_picture(const DataSheet& sheet, const Descript
   const auto grow = [&](const Vector3& p) { seen.push_back(p); };
   for (const Vector3& vertex : mesh.vertices) grow(vertex);
   std::array<std::vector<std::vector<Vector3>>, 3> cuts;
+  const bool pose = sheet.arm && sheet.arm->pose;
   if (sheet.arm && sheet.arm->reach) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      cuts[axis] = in_space(sheet.arm->reach->slices[axis].slice);
-      for (const auto& curve : cuts[axis]) std::ranges::for_each(curve, grow);
-    }
+    for (size_t axis = 0; axis < 3; ++axis) cuts[axis] = in_space(sheet.arm->reach->slices[axis].slice);
+  } else if (pose) {
+    for (const ReachSlice& cut : sheet.arm->pose->slices)
+      cuts[static_cast<size_t>(cut.slice.axis)] = in_space(cut.slice);
+  }
+  for (const auto& curves : cuts) {
+    for (const auto& curve : curves) std::ranges::for_each(curve, grow);
   }
   for (int j = 0; j < mechanism.joint_count(); ++j) grow(solution.posture->joint_point(j));
   double floor = 0.0;
@@ -287,7 +291,12 @@ std::optional<SheetFigure> device_picture(const DataSheet& sheet, const Descript
   draw_mesh(solid, mesh, workspace_centre, true);
   std::string caption =
       std::string(arm ? "In its home posture" : "In the middle of its joint ranges") +
-      (arm ? ", with three cuts through what its tool point reaches: normal to x violet, to y green, to z blue."
+      (pose && sheet.arm->pose->dimension() == 2 ? ", with what its tool reaches without turning."
+       : pose
+           ? ", with three cuts through what its tool reaches without turning: normal to x violet, to y green, "
+             "to z blue."
+       : arm
+           ? ", with three cuts through what its tool point reaches: normal to x violet, to y green, to z blue."
            : ", with its workspace.");
   caption += mechanism.delta() ? " A sketch: link lengths, sectors and workspace are to scale, the rest is not."
                                : " A sketch: joints, lengths and workspace are to scale, the rest is not.";
@@ -434,8 +443,9 @@ SheetFigure cut(const WorkspaceSheet& workspace, int normal, Figure which, const
           plot.svg(fmt::format("{}, cut normal to {}", name, axis_name(normal)))};
 }
 
-/// What an arm reaches in a plane, and how well conditioned it can be there.
-SheetFigure reach_cut(const ReachSlice& cut) {
+/// What an arm reaches in a plane, and how well conditioned it can be there; or a platform in one orientation.
+SheetFigure reach_cut(const ReachSlice& cut, const char* section, const char* name, const char* caption,
+                      const Interval& range) {
   const Slice& slice = cut.slice;
   const PlaneGrid& grid = cut.conditioning;
   const Field field{{grid.u.min * kMilli, grid.u.max * kMilli},
@@ -446,11 +456,21 @@ SheetFigure reach_cut(const ReachSlice& cut) {
   Plot plot(kMapWidth, kMapWidth, {fmt::format("{} [mm]", axis_name(slice.u)), millimetres(grid.u, 0.04)},
             {fmt::format("{} [mm]", axis_name(slice.v)), millimetres(grid.v, 0.04)});
   plot.keep_shape();
-  plot.map(field, curves(slice), "", {0.0, 1.0});
-  return {fmt::format("reach-{}{}", axis_name(slice.u), axis_name(slice.v)), "reach",
-          fmt::format("Reach, {} = {}", axis_name(slice.axis), at_text(slice.at)),
-          "Colour: 1/(condition number) of translation in the best posture found.",
-          plot.svg(fmt::format("Reach, cut normal to {}", axis_name(slice.axis)))};
+  plot.map(field, curves(slice), "", range);
+  return {fmt::format("{}-{}{}", section, axis_name(slice.u), axis_name(slice.v)), section,
+          fmt::format("{}, {} = {}", name, axis_name(slice.axis), at_text(slice.at)), caption,
+          plot.svg(fmt::format("{}, cut normal to {}", name, axis_name(slice.axis)))};
+}
+
+/// From zero to the largest conditioning on any cut.
+Interval conditioning_range(const std::vector<ReachSlice>& cuts) {
+  double most = 0.0;
+  for (const ReachSlice& cut : cuts) {
+    for (const double value : cut.conditioning.values) {
+      if (std::isfinite(value)) most = std::max(most, value);
+    }
+  }
+  return {0.0, most > 0.0 ? most : 1.0};
 }
 
 // -------------------------------------------------------------------------------------------------------
@@ -616,7 +636,22 @@ std::vector<SheetFigure> sheet_figures(const DataSheet& sheet, const Description
   if (sheet.arm && sheet.arm->reach) {
     for (const int normal : kCuts) {
       const ReachSlice& cut = sheet.arm->reach->slices[static_cast<size_t>(normal)];
-      if (cut.conditioning.nu > 1 && cut.conditioning.nv > 1) figures.push_back(reach_cut(cut));
+      if (cut.conditioning.nu > 1 && cut.conditioning.nv > 1) {
+        figures.push_back(reach_cut(cut, "reach", "Reach",
+                                    "Colour: 1/(condition number) of translation in the best posture found.",
+                                    {0.0, 1.0}));
+      }
+    }
+  }
+  if (sheet.arm && sheet.arm->pose) {
+    const std::vector<ReachSlice>& cuts = sheet.arm->pose->slices;
+    const Interval range = conditioning_range(cuts);
+    for (auto cut = cuts.rbegin(); cut != cuts.rend(); ++cut) {
+      if (cut->conditioning.nu > 1 && cut->conditioning.nv > 1) {
+        figures.push_back(reach_cut(*cut, "pose", "Home orientation",
+                                    "Colour: 1/(condition number) of the Jacobian, rotations made lengths.",
+                                    range));
+      }
     }
   }
   for (size_t i = 0; i < sheet.drives.size(); ++i) {

@@ -180,6 +180,14 @@ class Page {
       tile(number(sheet_.workspace->sweep[Figure::condition_number].mean, 3), "mean condition number");
     }
     if (sheet_.arm) {
+      if (sheet_.arm->pose && sheet_.arm->pose->inside > 0 && sheet_.arm->pose->dimension() > 1) {
+        const PoseWorkspace& pose = *sheet_.arm->pose;
+        const bool plane = pose.dimension() == 2;
+        tile(plane ? quantity(pose.measure, 1e4, "cm²", 3) : readable(pose.measure, "m^3", 3),
+             "workspace in the home orientation");
+        tile(readable(2.0 * pose.inscribed.sphere.size, "m", 3),
+             plane ? "diameter of the largest circle inside" : "diameter of the largest sphere inside");
+      }
       if (sheet_.arm->reach) {
         tile(readable(sheet_.arm->reach->volume.value, "m^3", 3), "reach of the tool point");
         tile(readable(2.0 * sheet_.arm->reach->inscribed.sphere.size, "m", 3),
@@ -360,7 +368,17 @@ class Page {
   }
 
   void arm(const ArmSheet& arm) {
-    section("reach", "Reach of the tool point");
+    if (arm.pose) {
+      section("pose", "Workspace in one orientation");
+      how("Where the tool can be without turning, away from its home posture: no joint beyond its range, no "
+          "singularity passed.");
+      facts(pose_facts(*arm.pose));
+      show_figures("pose", "three");
+      section("turning", "Turned at home");
+      how("How far the tool turns at its home place: about one axis alone, and of all orientations.");
+      facts(turning_facts(arm.pose->turning));
+    }
+    section("reach", arm.pose ? "Reach of the tool point in any orientation" : "Reach of the tool point");
     facts(reach_facts(arm));
     show_figures("reach", "three");
     if (arm.orientations) {

@@ -310,8 +310,12 @@ Json data_sheet_json(const DataSheet& sheet, const Description& description) {
     document["workspace"] = workspace_json(*sheet.workspace);
   } else if (sheet.plane) {
     document["workspace"] = plane_json(*sheet.plane);
+  } else if (sheet.arm && sheet.arm->pose) {
+    document["workspace"] = pose_json(*sheet.arm->pose);
   } else {
-    absent("workspace", "defined for three active joints and a tool that only translates");
+    absent("workspace", sheet.arm && sheet.arm->reach
+                            ? "of an arm whose tool turns see arm.reach"
+                            : "defined for a tool that only translates, and for platforms on several legs");
   }
   if (sheet.conditioning) document["conditioning"] = conditioning_json(*sheet.conditioning);
   if (sheet.continuous && sheet.peak) {

@@ -236,7 +236,12 @@ class SheetText {
       text_.heading(heading);
       for (const ArmFact& fact : lines) text_.row(fact.name, fact.value, fact.note);
     };
-    facts("Reach of the tool point", reach_facts(arm));
+    if (arm.pose) {
+      facts("Workspace in one orientation", pose_facts(*arm.pose));
+      if (arm.pose->reached) facts("Turned at home", turning_facts(arm.pose->turning));
+    }
+    facts(arm.pose ? "Reach of the tool point in any orientation" : "Reach of the tool point",
+          reach_facts(arm));
     facts("Orientations of the tool", orientation_facts(arm.orientations, home_turning(arm)));
     facts("Home posture", home_facts(arm, Mechanism(description_)));
     for (const PostureTable& table : arm_tables(arm)) {
@@ -464,6 +469,7 @@ class SheetText {
 std::string shares_by_class(const GlobalConditioning& conditioning) {
   std::string text;
   for (const ConditionClass k : kConditionClasses) {
+    if (conditioning.share(k) == 0.0) continue;
     text += fmt::format("{}{}: {} %", text.empty() ? "" : ", ", to_string(k),
                         number(100.0 * conditioning.share(k), 3));
   }

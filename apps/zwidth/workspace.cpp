@@ -21,6 +21,7 @@
 
 #include "zwidth/analysis/comparison.h"
 #include "zwidth/analysis/data_sheet.h"
+#include "zwidth/analysis/pose_workspace.h"
 #include "zwidth/description/units.h"
 #include "zwidth/mechanism/families.h"
 
@@ -347,8 +348,20 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
   const Drawn drawn = drawn_of(arguments, model);
   const double asked = arguments.grid_given ? *grid.value : 0.0;
   if (!arguments.against.empty()) return compare(arguments, model, asked, terminal);
+  const bool orientation = !arguments.orientation.empty() || !arguments.rotation.empty();
+  if (orientation && pose_workspace_obstacle(model.mechanism)) {
+    throw InputError(fmt::format(
+        "{}: asks for the places that a platform on several legs reaches in one orientation, and {} has none; "
+        "leave it out",
+        arguments.orientation.empty() ? "--rotation" : "--orientation", model.description.name));
+  }
   if (const auto obstacle = workspace_obstacle(model.mechanism)) {
     if (!reach_obstacle(model.mechanism)) return arm_workspace(arguments, model, asked, terminal);
+    if (const auto why = pose_workspace_obstacle(model.mechanism); !why) {
+      return platform_workspace(arguments, model, asked, terminal);
+    } else if (model.mechanism.tool_turns()) {
+      throw InputError(fmt::format("{}: its workspace is not known: {}", model.description.name, *why));
+    }
     throw InputError(fmt::format("{}: {}", model.description.name, *obstacle));
   }
   if (in_plane(model.mechanism) && !arguments.position.empty())
@@ -493,6 +506,7 @@ void add_workspace(CLI::App& app, Context& context) {
       "  zwidth workspace delta --figure delta.pdf                 cuts and surface (needs gnuplot)\n"
       "  zwidth workspace r-cube --figure r-cube.svg --of softest  the same with the stiffness\n"
       "  zwidth workspace seven-dof --position 0.3,0,0.1           also how the tool can be turned there\n"
+      "  zwidth workspace hexapod.toml --orientation 0,20deg,0      a platform's, turned\n"
       "  zwidth workspace delta --set mechanism.forearm=\"170 mm\" --against delta\n"
       "\nCtrl-C stops with what there is, and exits 1.");
   auto arguments = std::make_shared<WorkspaceArguments>();
@@ -503,9 +517,16 @@ void add_workspace(CLI::App& app, Context& context) {
           "--against", arguments->against,
           "compare with another device: what both reach, and what only one does; --set does not change it")
       ->type_name("DEVICE");
-  verb->add_option("--position", arguments->position,
-                   "where to tell how the tool of an arm can be turned; its home posture if not given")
+  verb->add_option(
+          "--position", arguments->position,
+          "where to tell how the tool of an arm or a platform can be turned; its home posture if not given")
       ->type_name("X,Y,Z");
+  verb->add_option("--orientation", arguments->orientation,
+                   "of a platform, in which its places are asked for, that of its home posture if not given: "
+                   "ROLL,PITCH,YAW about the fixed axes, or a quaternion W,X,Y,Z")
+      ->type_name("A,B,C");
+  verb->add_option("--rotation", arguments->rotation, "the same as a matrix: nine numbers, row by row")
+      ->type_name("R11,...");
   verb->add_option("--map", arguments->map, "write figures at every point inside: FILE.csv or FILE.npy")
       ->type_name("FILE");
   verb->add_option("--figure", arguments->figure, "draw cuts and surface: FILE.svg, .png or .pdf")

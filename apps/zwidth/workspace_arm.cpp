@@ -18,28 +18,13 @@ namespace {
 /// Three cuts through the reach with the conditioning of the best posture at each point, and the outlines.
 void draw(const Model& model, const ReachSheet& reach, const std::string& path) {
   std::string script = gnuplot_terminal(path, 1000.0, 860.0);
-  const char* axes = "xyz";
   script += fmt::format(
       "set multiplot layout 2,2 margins 0.08,0.95,0.08,0.92 spacing 0.13,0.12 title 'Reach of {}: best "
       "conditioning of translation on three cuts'\n"
       "{}set cbrange [0:1]\nset size ratio -1\nset grid front lc rgb '#dddddd'\nset border lc rgb "
       "'#888888'\nset tics textcolor rgb '#444444'\nunset key\n",
       model.description.name, gnuplot_palette());
-  for (const size_t normal : {2U, 1U, 0U}) {
-    const Slice& slice = reach.slices[normal].slice;
-    const PlaneGrid& grid = reach.slices[normal].conditioning;
-    script += gnuplot_block(grid.values, grid.nu, fmt::format("map{}", normal));
-    script += gnuplot_outlines(slice, fmt::format("edge{}", normal));
-    script += fmt::format(
-        "set title '{} = {:.1f} mm'\nset xlabel '{} [mm]'\nset ylabel '{} [mm]'\nset xrange [{:g}:{:g}]\nset "
-        "yrange [{:g}:{:g}]\n"
-        "plot $map{} matrix using ({:g}+$1*{:g}):({:g}+$2*{:g}):3 with image, $edge{} using 1:2 with lines lc "
-        "rgb '#222222' lw 1.2\n",
-        axes[normal], slice.at * kMilli, axes[slice.u], axes[slice.v], grid.u.min * kMilli, grid.u.max * kMilli,
-        grid.v.min * kMilli, grid.v.max * kMilli, normal, grid.u.min * kMilli,
-        grid.u.width() / std::max(1, grid.nu - 1) * kMilli, grid.v.min * kMilli,
-        grid.v.width() / std::max(1, grid.nv - 1) * kMilli, normal);
-  }
+  for (const int normal : {2, 1, 0}) script += gnuplot_cut(reach.slices[static_cast<size_t>(normal)], normal);
   run_gnuplot(script + "unset multiplot\n");
 }
 
@@ -60,6 +45,24 @@ WorkspaceMap map_of(const ReachMap& reach) {
 }
 
 }  // namespace
+
+std::string gnuplot_cut(const ReachSlice& cut, int number) {
+  const char* axes = "xyz";
+  const Slice& slice = cut.slice;
+  const PlaneGrid& grid = cut.conditioning;
+  return gnuplot_block(grid.values, grid.nu, fmt::format("map{}", number)) +
+         gnuplot_outlines(slice, fmt::format("edge{}", number)) +
+         fmt::format(
+             "set title '{} = {:.1f} mm'\nset xlabel '{} [mm]'\nset ylabel '{} [mm]'\nset xrange "
+             "[{:g}:{:g}]\nset yrange [{:g}:{:g}]\n"
+             "plot $map{} matrix using ({:g}+$1*{:g}):({:g}+$2*{:g}):3 with image, $edge{} using 1:2 with "
+             "lines "
+             "lc rgb '#222222' lw 1.2\n",
+             axes[slice.axis], slice.at * kMilli, axes[slice.u], axes[slice.v], grid.u.min * kMilli,
+             grid.u.max * kMilli, grid.v.min * kMilli, grid.v.max * kMilli, number, grid.u.min * kMilli,
+             grid.u.width() / std::max(1, grid.nu - 1) * kMilli, grid.v.min * kMilli,
+             grid.v.width() / std::max(1, grid.nv - 1) * kMilli, number);
+}
 
 Turning turning_of(const WorkspaceArguments& arguments, const Mechanism& mechanism,
                    std::optional<OrientationWorkspace> orientations) {

@@ -10,6 +10,7 @@
 
 #include "zwidth/analysis/conditioning.h"
 #include "zwidth/analysis/mechanical.h"
+#include "zwidth/analysis/reach_shapes.h"
 #include "zwidth/mechanism/plane_figure.h"
 
 /// Parts of the verb `workspace`, which looks different for tools in space and in a plane.
@@ -24,6 +25,7 @@ struct WorkspaceArguments : DeviceArguments {
   std::string figure;
   std::string position;
   std::string of = "condition_number";
+  std::string orientation, rotation;
   bool all = false;
 };
 
@@ -39,6 +41,11 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
 /// !reach_obstacle(model.mechanism).
 int arm_workspace(const WorkspaceArguments& arguments, const Model& model, double spacing,
                   const Terminal& terminal);
+
+/// The verb for a platform on several legs that turns. `spacing` 0: one that fits. REQUIRES:
+/// !pose_workspace_obstacle(model.mechanism).
+int platform_workspace(const WorkspaceArguments& arguments, const Model& model, double spacing,
+                       const Terminal& terminal);
 
 /// How the tool of an arm can be turned; nothing for others.
 struct Turning {
@@ -79,6 +86,8 @@ void write_map(const WorkspaceMap& map, const std::string& path);
 /// MachineError if the file cannot be written.
 std::string gnuplot_terminal(const std::string& path, double width, double height);
 std::string gnuplot_palette();
+/// Commands that draw a cut with its conditioning into the next panel; `number` makes its names unique.
+std::string gnuplot_cut(const ReachSlice& cut, int number);
 /// A data block of values on a grid, row after row, and one of a slice's outlines [mm].
 std::string gnuplot_block(const std::vector<double>& values, int columns, const std::string& name);
 std::string gnuplot_outlines(const Slice& slice, const std::string& name);

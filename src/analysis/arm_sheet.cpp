@@ -70,6 +70,12 @@ ArmSheet arm_sheet(const Mechanism& mechanism, const TorqueSource& continuous, c
   sheet.home = home_posture(mechanism, continuous, peak);
   report(0.4);
   sheet.complete = sheet.continuous.complete && (!sheet.peak || sheet.peak->complete);
+  if (sheet.complete && options.pose.places > 0 && !pose_workspace_obstacle(mechanism)) {
+    Effort rest = quiet;
+    if (options.effort.progress) rest.progress = [&](double share) { report(0.4 + 0.6 * share); };
+    sheet.pose = pose_workspace(mechanism, options.pose, rest);
+    sheet.complete = sheet.pose->complete;
+  }
   const Mechanism& arm = options.turning != nullptr ? *options.turning : mechanism;
   if (reach_obstacle(arm) || !sheet.complete) return sheet;
 

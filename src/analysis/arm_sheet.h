@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "zwidth/analysis/orientation.h"
+#include "zwidth/analysis/pose_workspace.h"
 #include "zwidth/analysis/posture_sweep.h"
 #include "zwidth/analysis/reach_shapes.h"
 
@@ -18,6 +19,7 @@ struct ArmSheetOptions {
   double reach_spacing = 0.0;               ///< of those cubes instead, if above zero [m]
   std::int64_t slice_postures = 400'000;    ///< for the conditioning on the cuts; 0 leaves the cuts out
   OrientationOptions orientation;           ///< `places` 0 leaves the orientations out
+  PoseWorkspaceOptions pose;                ///< `places` 0 leaves the workspace in one orientation out
   /// Of an arm whose tool counts as a point `with_turning_tool`, for reach and orientations; else null.
   const Mechanism* turning = nullptr;
   Effort effort;
@@ -52,6 +54,7 @@ struct ArmSheet {
   std::optional<HomePosture> home;                     ///< empty if the loops do not close there
   std::optional<ReachSheet> reach;                     ///< empty for mechanisms that `reach_obstacle` refuses
   std::optional<OrientationWorkspace> orientations;    ///< the same of `orientation_obstacle`
+  std::optional<PoseWorkspace> pose;                   ///< the same of `pose_workspace_obstacle`
   bool complete = true;
 };
 

@@ -225,7 +225,10 @@ ArmSheet arm_of(const Mechanism& mechanism, const std::vector<std::optional<Driv
     };
   };
   ArmSheetOptions arm{.effort = options.effort};
-  if (options.slice_points <= 1) arm.slice_postures = 0;
+  if (options.slice_points <= 1) {
+    arm.slice_postures = 0;
+    arm.pose.slice_points = 0;
+  }
   if (mechanism.platform() == PlatformFreedom::point) arm.turning = &turning;
   return arm_sheet(mechanism, source(false), source(true), stepped ? joint_step : ActiveVector(), arm);
 }

@@ -31,6 +31,16 @@ bool JacobianUnits::homogeneous(const Jacobian& jacobian) const {
   return rows_alike && (sliding == 0 || sliding == n);
 }
 
+JacobianUnits jacobian_units(const Mechanism& mechanism) {
+  JacobianUnits units{.linear_rows = mechanism.linear_rows()};
+  for (int i = 0; i < mechanism.active_count(); ++i) {
+    if (mechanism.joints()[static_cast<std::size_t>(mechanism.active_joint(i))].type == JointType::prismatic) {
+      units.sliding_joints |= 1U << i;
+    }
+  }
+  return units;
+}
+
 Jacobian homogeneous(const Jacobian& jacobian, const JacobianUnits& units, double length) {
   assert(length > 0.0 && units.linear_rows <= jacobian.rows());
   Jacobian result = jacobian;

@@ -20,6 +20,8 @@ struct JacobianUnits {
   /// Whether rows and columns are all of one kind, so that singular values mean something as they are.
   bool homogeneous(const Jacobian& jacobian) const;
 };
+/// Of the Jacobians of a mechanism.
+JacobianUnits jacobian_units(const Mechanism& mechanism);
 
 /// The dimensionally homogeneous Jacobian: angular rows and the columns of sliding joints multiplied by a
 /// length [m], so that every entry is a length (Angeles 2002). REQUIRES: length > 0.

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "zwidth/analysis/internal/probe.h"
+#include "zwidth/analysis/internal/region.h"
 #include "zwidth/analysis/workspace.h"
 
 /// The largest c + a U in the workspace, U the unit ball of the 2-norm (sphere, circle) or of the maximum norm
@@ -19,6 +20,8 @@ namespace zwidth {
 namespace {
 
 using internal::Probe;
+using internal::Region;
+using internal::RegionLattice;
 
 constexpr std::size_t kMaxContacts = 14;
 constexpr std::size_t kMaxRays = 64;  // enough for all faces of a cube
@@ -90,8 +93,8 @@ struct Contact {
 class Inflation {
  public:
   // `hole` is the size of the smallest hole that is looked for [m]; infinite: there is none.
-  Inflation(Probe& probe, const Shape& shape, double scale, double hole)
-      : probe_(probe), shape_(shape), scale_(scale), hole_(hole) {}
+  Inflation(Region& region, const Shape& shape, double scale, double hole)
+      : region_(region), shape_(shape), scale_(scale), hole_(hole) {}
 
   // Contacts of centre c up to `margin` beyond the nearest, nearest first; those of a neighbouring centre help.
   // The shape of size `safe` fits, and none is expected to beyond `reach`.
@@ -140,19 +143,8 @@ class Inflation {
   }
 
  private:
-  bool inside(const Vector3& p) { return probe_.inverse(p).inside; }
-
-  // How far the joints are from the ends of their ranges [rad]; below zero beyond, NaN off the device's branch.
-  double margin(const Vector3& p) {
-    const Probe::Answer answer = probe_.inverse(p);
-    if (!answer.reached || !answer.on_branch) return std::numeric_limits<double>::quiet_NaN();
-    double least = std::numeric_limits<double>::infinity();
-    for (int j = 0; j < probe_.dimension(); ++j) {
-      const Interval range = probe_.range(j);
-      least = std::min({least, answer.joints[j] - range.min, range.max - answer.joints[j]});
-    }
-    return least;
-  }
+  bool inside(const Vector3& p) { return region_.inside(p); }
+  double margin(const Vector3& p) { return region_.margin(p); }
 
   // Where the ray leaves between `in`, inside, and `out`, outside: by false position on the margin (Illinois),
   // or bisection where there is none.
@@ -213,23 +205,9 @@ class Inflation {
   // Outward normal of the boundary where a contact leaves.
   Vector3 normal(const Vector3& c, const Contact& contact) {
     if (shape_.dimension == 2) return plane_normal(c, contact);
-    const Probe::Answer answer = probe_.inverse(c + contact.t * contact.u);
-    Vector3 n = shape_.cube ? shape_.onto_surface(contact.u).normalized() : contact.u;
-    if (!answer.reached || answer.jacobian.determinant() == 0.0) return n;
-    const Matrix3 inverse = answer.jacobian.inverse();
-    double closest = 1e-3;  // [rad]; the joint that has come to an end of its range
-    for (int j = 0; j < 3; ++j) {
-      const Interval range = probe_.range(j);
-      const double below = answer.joints[j] - range.min, above = range.max - answer.joints[j];
-      const double gap = std::min(std::abs(below), std::abs(above));
-      const Vector3 candidate =
-          (std::abs(below) < std::abs(above) ? -1.0 : 1.0) * inverse.row(j).transpose().normalized();
-      if (gap < closest && candidate.dot(contact.u) > 0.05) {
-        closest = gap;
-        n = candidate;
-      }
-    }
-    return n;
+    const std::optional<Vector3> known = region_.normal(c + contact.t * contact.u, contact.u);
+    if (known) return *known;
+    return shape_.cube ? shape_.onto_surface(contact.u).normalized() : contact.u;
   }
 
   // The same in a plane, where the boundary need not be the end of a joint's range. Where a ray leaves first
@@ -251,7 +229,7 @@ class Inflation {
     return Vector3(tangent.y(), -tangent.x(), 0.0).normalized();
   }
 
-  Probe& probe_;
+  Region& region_;
   const Shape& shape_;
   double scale_;
   double hole_;
@@ -319,10 +297,10 @@ struct Start {
   std::array<double, 2> distance{1e300, 1e300};  // by the 2-norm and by the maximum norm [m]
 };
 
-InscribedShape inflate(Probe& probe, const Shape& shape, const Start& start, double spacing, double scale) {
+InscribedShape inflate(Region& region, const Shape& shape, const Start& start, double spacing, double scale) {
   // In a plane, whose workspace often has holes, rays go step by step from where the shape is known to fit.
   const bool in_plane = shape.dimension == 2;
-  Inflation inflation(probe, shape, scale, in_plane ? spacing : std::numeric_limits<double>::infinity());
+  Inflation inflation(region, shape, scale, in_plane ? spacing : std::numeric_limits<double>::infinity());
   Vector3 c = start.centre;
   double trust = spacing;
   std::vector<Contact> known;
@@ -368,38 +346,18 @@ InscribedShape inflate(Probe& probe, const Shape& shape, const Start& start, dou
   return result;
 }
 
-std::vector<Start> starts(Probe& probe, const Extents& extents, double h) {
-  std::array<int, 3> n;
-  const bool in_plane = probe.dimension() == 2;
-  for (int axis = 0; axis < 3; ++axis) n[axis] = static_cast<int>(extents.range[axis].width() / h) + 3;
-  if (in_plane) n[2] = 1;
-  const auto index = [&](int i, int j, int k) { return (i * n[1] + j) * n[2] + k; };
-  const auto point = [&](int i, int j, int k) {
-    return Vector3(extents.range[0].min + (i - 0.5) * h, extents.range[1].min + (j - 0.5) * h,
-                   in_plane ? 0.0 : extents.range[2].min + (k - 0.5) * h);
-  };
-  std::vector<char> inside(static_cast<std::size_t>(n[0] * n[1] * n[2]));
-  for (int i = 0; i < n[0]; ++i) {
-    for (int j = 0; j < n[1]; ++j) {
-      probe.restart();
-      for (int k = 0; k < n[2]; ++k)
-        inside[static_cast<std::size_t>(index(i, j, k))] = probe.inverse(point(i, j, k)).inside;
-    }
-  }
+std::vector<Start> starts(const RegionLattice& lattice) {
+  const std::array<int, 3>& n = lattice.count;
   std::vector<Start> centres;
   std::vector<Vector3> rim;
-  const auto is_inside = [&](int i, int j, int k) {
-    return i >= 0 && j >= 0 && k >= 0 && i < n[0] && j < n[1] && k < n[2] &&
-           inside[static_cast<std::size_t>(index(i, j, k))] != 0;
-  };
   for (int i = 0; i < n[0]; ++i) {
     for (int j = 0; j < n[1]; ++j) {
       for (int k = 0; k < n[2]; ++k) {
-        if (is_inside(i, j, k)) {
-          centres.push_back({.centre = point(i, j, k)});
-        } else if (is_inside(i - 1, j, k) || is_inside(i + 1, j, k) || is_inside(i, j - 1, k) ||
-                   is_inside(i, j + 1, k) || is_inside(i, j, k - 1) || is_inside(i, j, k + 1)) {
-          rim.push_back(point(i, j, k));
+        if (lattice.at(i, j, k)) {
+          centres.push_back({.centre = lattice.point(i, j, k)});
+        } else if (lattice.at(i - 1, j, k) || lattice.at(i + 1, j, k) || lattice.at(i, j - 1, k) ||
+                   lattice.at(i, j + 1, k) || lattice.at(i, j, k - 1) || lattice.at(i, j, k + 1)) {
+          rim.push_back(lattice.point(i, j, k));
         }
       }
     }
@@ -423,42 +381,117 @@ std::vector<Start> starts(Probe& probe, const Extents& extents, double h) {
   return centres;
 }
 
+// The workspace of a mechanism whose tool translates.
+class TranslationRegion : public Region {
+ public:
+  explicit TranslationRegion(const Mechanism& mechanism) : probe_(mechanism) {}
+
+  int dimension() const override { return probe_.dimension(); }
+  bool inside(const Vector3& point) override { return probe_.inverse(point).inside; }
+
+  // How far the driven joints are from the ends of their ranges [rad]; NaN off the device's branch, and where a
+  // joint that no drive moves is beyond its own.
+  double margin(const Vector3& point) override {
+    const Probe::Answer answer = probe_.inverse(point);
+    if (!answer.reached || !answer.on_branch) return std::numeric_limits<double>::quiet_NaN();
+    double least = std::numeric_limits<double>::infinity();
+    for (int j = 0; j < probe_.dimension(); ++j) {
+      const Interval range = probe_.range(j);
+      least = std::min({least, answer.joints[j] - range.min, range.max - answer.joints[j]});
+    }
+    return answer.inside || least < 0.0 ? least : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  // Of the surface on which the joint that has come to an end of its range stays there.
+  std::optional<Vector3> normal(const Vector3& point, const Vector3& outwards) override {
+    const Probe::Answer answer = probe_.inverse(point);
+    if (!answer.reached || answer.jacobian.determinant() == 0.0) return std::nullopt;
+    const Matrix3 inverse = answer.jacobian.inverse();
+    std::optional<Vector3> n;
+    double closest = 1e-3;  // [rad]
+    for (int j = 0; j < 3; ++j) {
+      const Interval range = probe_.range(j);
+      const double below = answer.joints[j] - range.min, above = range.max - answer.joints[j];
+      const double gap = std::min(std::abs(below), std::abs(above));
+      const Vector3 candidate =
+          (std::abs(below) < std::abs(above) ? -1.0 : 1.0) * inverse.row(j).transpose().normalized();
+      if (gap < closest && candidate.dot(outwards) > 0.05) {
+        closest = gap;
+        n = candidate;
+      }
+    }
+    return n;
+  }
+
+  void restart() { probe_.restart(); }
+
+ private:
+  Probe probe_;
+};
+
+RegionLattice lattice_of(TranslationRegion& region, const Extents& extents, double h) {
+  RegionLattice lattice{.spacing = h};
+  for (int axis = 0; axis < region.dimension(); ++axis) {
+    lattice.count[axis] = static_cast<int>(extents.range[axis].width() / h) + 3;
+    lattice.origin[axis] = extents.range[axis].min - 0.5 * h;
+  }
+  lattice.inside.resize(lattice.index(lattice.count[0] - 1, lattice.count[1] - 1, lattice.count[2] - 1) + 1);
+  for (int i = 0; i < lattice.count[0]; ++i) {
+    for (int j = 0; j < lattice.count[1]; ++j) {
+      region.restart();
+      for (int k = 0; k < lattice.count[2]; ++k)
+        lattice.inside[lattice.index(i, j, k)] = region.inside(lattice.point(i, j, k)) ? 1 : 0;
+    }
+  }
+  return lattice;
+}
+
 }  // namespace
+
+namespace internal {
+
+InscribedShape largest_shape(Region& region, bool cube, const RegionLattice& lattice, double scale, int tries) {
+  const bool in_plane = region.dimension() == 2;
+  const double h = lattice.spacing;
+  const Shape shape = in_plane ? (cube ? unit_square() : unit_circle()) : cube ? unit_cube() : unit_sphere();
+  std::vector<Start> centres = starts(lattice);
+  std::ranges::sort(centres, std::ranges::greater(),
+                    [cube](const Start& start) { return start.distance[cube]; });
+  InscribedShape best;
+  std::vector<Vector3> tried;
+  for (const Start& start : centres) {
+    if (std::ssize(tried) == tries) break;
+    // Others lead to the same place.
+    const double apart = std::max(3.0 * h, 0.5 * start.distance[cube]);
+    if (std::ranges::any_of(tried, [&](const Vector3& c) { return (c - start.centre).norm() < apart; }))
+      continue;
+    tried.push_back(start.centre);
+    const InscribedShape found = inflate(region, shape, start, h, scale);
+    if (found.size > best.size) best = found;
+  }
+  return best;
+}
+
+}  // namespace internal
 
 InscribedShapes inscribed_shapes(const Mechanism& mechanism) {
   assert(!workspace_obstacle(mechanism));
-  Probe probe(mechanism);
   const Extents extents = workspace_extents(mechanism);
   const double scale = extents.size().maxCoeff();
   InscribedShapes shapes;
   if (!(scale > 0.0)) return shapes;
-  const bool in_plane = probe.dimension() == 2;
+  TranslationRegion region(mechanism);
+  const bool in_plane = region.dimension() == 2;
   // An arm that positions often covers a shell, thin beside its width: as many points as a cube would have then
   // lie closer in its flat box.
   const bool arm = mechanism.platform() == PlatformFreedom::point;
-  const bool quick = probe.fast() || arm;
+  const bool quick = Probe(mechanism).fast() || arm;
   const double edge = arm ? std::cbrt(extents.size().prod()) : scale;
   const double h = edge / (in_plane ? 80.0 : quick ? 24.0 : 12.0);
   const int tries = in_plane ? 5 : quick ? 3 : 1;
-  std::vector<Start> centres = starts(probe, extents, h);
-  for (const bool cube : {false, true}) {
-    const Shape shape = in_plane ? (cube ? unit_square() : unit_circle()) : cube ? unit_cube() : unit_sphere();
-    std::ranges::sort(centres, std::ranges::greater(),
-                      [cube](const Start& start) { return start.distance[cube]; });
-    InscribedShape best;
-    std::vector<Vector3> tried;
-    for (const Start& start : centres) {
-      if (std::ssize(tried) == tries) break;
-      // Others lead to the same place.
-      const double apart = std::max(3.0 * h, 0.5 * start.distance[cube]);
-      if (std::ranges::any_of(tried, [&](const Vector3& c) { return (c - start.centre).norm() < apart; }))
-        continue;
-      tried.push_back(start.centre);
-      const InscribedShape found = inflate(probe, shape, start, h, scale);
-      if (found.size > best.size) best = found;
-    }
-    (cube ? shapes.cube : shapes.sphere) = best;
-  }
+  const RegionLattice lattice = lattice_of(region, extents, h);
+  shapes.sphere = internal::largest_shape(region, false, lattice, scale, tries);
+  shapes.cube = internal::largest_shape(region, true, lattice, scale, tries);
   return shapes;
 }
 

@@ -172,16 +172,6 @@ class Sweeper {
   Eigen::Index linear_;
 };
 
-JacobianUnits units_of(const Mechanism& mechanism) {
-  JacobianUnits units{.linear_rows = mechanism.linear_rows()};
-  for (int i = 0; i < mechanism.active_count(); ++i) {
-    if (mechanism.joints()[static_cast<std::size_t>(mechanism.active_joint(i))].type == JointType::prismatic) {
-      units.sliding_joints |= 1U << i;
-    }
-  }
-  return units;
-}
-
 // Projected gradient ascent of `value` from the best of many postures; `slope` is its gradient at a tool
 // position.
 template <class Value, class Slope>
@@ -316,7 +306,7 @@ PostureSweep sweep_postures(const Mechanism& mechanism, const PostureSweepOption
     sweep.step[k] = all.step[k].result(mechanism);
   }
   if (!all.jacobians.empty()) {
-    const JacobianUnits units = units_of(mechanism);
+    const JacobianUnits units = jacobian_units(mechanism);
     sweep.characteristic_length = characteristic_length(all.jacobians, units).length;
     for (const Jacobian& J : all.jacobians) {
       sweep.homogeneous.add(dexterity(homogeneous(J, units, sweep.characteristic_length)).condition_number);

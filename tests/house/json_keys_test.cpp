@@ -10,7 +10,7 @@ namespace zwidth::house {
 namespace {
 
 struct Verb {
-  const char* arguments;
+  std::string arguments;
   std::vector<std::string> free;  // objects whose keys are names of things, not of quantities
 };
 
@@ -53,6 +53,7 @@ TEST(JsonKeys, AreAllDocumented) {
       {"workspace five-bar --grid 10mm --all-figures", {}},
       {"workspace five-bar --grid 10mm --against five-bar", {}},
       {"workspace seven-dof --grid 60mm", {}},
+      {"workspace " + (root() / "examples/devices/three-rrr.toml").string() + " --grid 10mm", {}},
       {"workspace pneumatic-3 --grid 20mm", {}},
       {"size delta", {}},
       {"size pneumatic-3 --load 1,0,2", {}},

@@ -118,18 +118,21 @@ std::string value_text(const Mechanism& mechanism, int active, double value) {
 
 }  // namespace
 
+Matrix3 orientation_given(const std::string& orientation, const std::string& rotation) {
+  if (!orientation.empty() && !rotation.empty())
+    throw InputError("--rotation: give it or --orientation, not both");
+  return orientation.empty() ? rotation_option(rotation) : orientation_option(orientation);
+}
+
 void read_goal(const Arguments& arguments, const Mechanism& mechanism, const Frame& frame, Goal& goal) {
   goal.tool.position = frame.R.transpose() * position_option(arguments.position, frame);
   const bool any_orientation = !arguments.orientation.empty() || !arguments.rotation.empty();
   if (any_orientation) {
     const char* option = arguments.orientation.empty() ? "--rotation" : "--orientation";
-    if (!arguments.orientation.empty() && !arguments.rotation.empty())
-      throw InputError("--rotation: give it or --orientation, not both");
     if (!mechanism.tool_turns())
       throw InputError(fmt::format("{}: the tool of {} has no orientation to choose; leave it out", option,
                                    mechanism.name()));
-    const Matrix3 R = arguments.orientation.empty() ? rotation_option(arguments.rotation)
-                                                    : orientation_option(arguments.orientation);
+    const Matrix3 R = orientation_given(arguments.orientation, arguments.rotation);
     goal.tool.rotation = frame.R.transpose() * R;
     goal.by_orientation = true;
   }

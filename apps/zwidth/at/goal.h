@@ -27,6 +27,9 @@ struct Goal {
   Json choice_json(const Mechanism& mechanism) const;
 };
 
+/// What --orientation or --rotation says. REQUIRES: one of them is not empty. Throws InputError.
+Matrix3 orientation_given(const std::string& orientation, const std::string& rotation);
+
 /// Reads the options into `goal`, or throws InputError. The mechanism must outlive it.
 void read_goal(const Arguments& arguments, const Mechanism& mechanism, const Frame& frame, Goal& goal);
 

@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <mutex>
+
+#include "at/goal.h"
+#include "gnuplot.h"
+#include "interrupt.h"
+#include "sheet_arm.h"
+#include "workspace_verb.h"
+
+#include "zwidth/analysis/pose_workspace.h"
+#include "zwidth/description/units.h"
+
+namespace zwidth {
+
+namespace {
+
+/// Cuts through the place where the search began, with their conditioning and outlines.
+void draw(const Model& model, const PoseWorkspace& workspace, const std::string& path) {
+  double most = 0.0;
+  for (const ReachSlice& cut : workspace.slices) {
+    for (const double value : cut.conditioning.values)
+      if (std::isfinite(value)) most = std::max(most, value);
+  }
+  const bool plane = workspace.slices.size() == 1;
+  double height = 860.0, width = 1000.0;
+  if (plane) {
+    const PlaneGrid& grid = workspace.slices.front().conditioning;
+    width = 760.0;
+    height = std::round(570.0 * grid.v.width() / std::max(1e-12, grid.u.width()) + 130.0);
+  }
+  std::string script = gnuplot_terminal(path, width, height);
+  const std::string title =
+      fmt::format("{} in one orientation ({}): 1/(condition number){}", model.description.name,
+                  orientation_text(workspace.orientation), plane ? "" : " on three cuts");
+  if (!plane) {
+    script += fmt::format("set multiplot layout 2,2 margins 0.08,0.95,0.08,0.92 spacing 0.13,0.12 title '{}'\n",
+                          title);
+  }
+  script += fmt::format(
+      "{}set cbrange [0:{:g}]\nset size ratio -1\nset grid front lc rgb '#dddddd'\nset border lc rgb "
+      "'#888888'\nset tics textcolor rgb '#444444'\nunset key\n",
+      gnuplot_palette(), most > 0.0 ? most : 1.0);
+  for (auto cut = workspace.slices.rbegin(); cut != workspace.slices.rend(); ++cut)
+    script += gnuplot_cut(*cut, cut->slice.axis);
+  run_gnuplot(script + (plane ? "" : "unset multiplot\n"));
+}
+
+WorkspaceMap map_of(const PoseWorkspace& workspace) {
+  return {.spacing = workspace.spacing, .complete = workspace.complete, .positions = workspace.places};
+}
+
+}  // namespace
+
+int platform_workspace(const WorkspaceArguments& arguments, const Model& model, double spacing,
+                       const Terminal& terminal) {
+  const Mechanism& mechanism = model.mechanism;
+  PoseWorkspaceOptions options{.spacing = spacing};
+  if (arguments.figure.empty()) options.slice_points = 0;
+  if (!arguments.orientation.empty() || !arguments.rotation.empty())
+    options.orientation = at::orientation_given(arguments.orientation, arguments.rotation);
+  if (!arguments.position.empty()) {
+    const ParsedQuantities at =
+        parse_quantity_list(arguments.position, std::vector<Dimension>(3, Dimension::length));
+    if (!at) throw InputError(fmt::format("--position \"{}\": {}; {}", arguments.position, at.rule, at.advice));
+    options.position = Vector3(at.values[0], at.values[1], at.values[2]);
+  }
+  Effort effort;
+  effort.cancel = &stop_on_interrupt();
+  PoseWorkspace workspace;
+  {
+    Progress progress("workspace", "%");
+    std::mutex mutex;
+    effort.progress = [&](double fraction) {
+      const std::lock_guard lock(mutex);
+      progress.update(100.0 * fraction, 100.0);
+    };
+    try {
+      workspace = pose_workspace(mechanism, options, effort);
+    } catch (const std::length_error& error) {
+      throw InputError(fmt::format("--grid {}: {}; take a coarser grid", arguments.grid, error.what()));
+    }
+  }
+  if (!workspace.complete) {
+    complain("stopped before the end");
+    return kNo;
+  }
+  if (workspace.reached && !workspace.unbounded && workspace.dimension() > 0 && workspace.inside == 0) {
+    throw InputError(fmt::format(
+        "--grid {}: no point of so wide a lattice is reached from the home posture; take a finer grid",
+        arguments.grid));
+  }
+  const bool answered = workspace.reached && !workspace.unbounded;
+  if (answered && !arguments.map.empty()) write_map(map_of(workspace), arguments.map);
+  if (answered && !arguments.figure.empty() && !workspace.slices.empty())
+    draw(model, workspace, arguments.figure);
+  if (arguments.json) {
+    Json document;
+    document["device"] = model.description.name;
+    document["complete"] = true;
+    document.update(pose_json(workspace));
+    print_json(document);
+    return answered ? kDone : kNo;
+  }
+  Sheet sheet(terminal);
+  sheet.title(fmt::format("{}: workspace", model.description.name),
+              "of the tool in one orientation, device frame");
+  for (const ArmFact& fact : pose_facts(workspace)) sheet.row(fact.name, fact.value, fact.note);
+  if (workspace.reached) {
+    sheet.heading("Turned at one place");
+    for (const ArmFact& fact : turning_facts(workspace.turning)) sheet.row(fact.name, fact.value, fact.note);
+  }
+  if (!arguments.map.empty() && answered) sheet.paragraph("map: " + arguments.map, 2, Tint::dim);
+  if (!arguments.figure.empty() && answered) sheet.paragraph("figure: " + arguments.figure, 2, Tint::dim);
+  print(sheet.text());
+  return answered ? kDone : kNo;
+}
+
+}  // namespace zwidth

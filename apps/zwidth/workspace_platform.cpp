@@ -86,10 +86,19 @@ int platform_workspace(const WorkspaceArguments& arguments, const Model& model, 
     complain("stopped before the end");
     return kNo;
   }
-  if (workspace.reached && !workspace.unbounded && workspace.dimension() > 0 && workspace.inside == 0) {
-    throw InputError(fmt::format(
-        "--grid {}: no point of so wide a lattice is reached from the home posture; take a finer grid",
-        arguments.grid));
+  if (workspace.reached && !workspace.unbounded && workspace.dimension() > 0) {
+    bool wide = workspace.inside == 0;
+    std::string widths;
+    for (const int axis : workspace.axes) {
+      const double width = workspace.range[static_cast<size_t>(axis)].width();
+      wide = wide || (spacing > 0.0 && width < spacing);
+      widths += fmt::format("{}{}", widths.empty() ? "" : " x ", quantity(width, kMilli, "mm"));
+    }
+    if (wide) {
+      throw InputError(
+          fmt::format("--grid {}: the lattice must be finer than the workspace is wide{}; take a finer grid",
+                      arguments.grid, workspace.inside > 0 ? ", " + widths : ""));
+    }
   }
   const bool answered = workspace.reached && !workspace.unbounded;
   if (answered && !arguments.map.empty()) write_map(map_of(workspace), arguments.map);

@@ -43,7 +43,7 @@ TEST(WorkspacePlatform, OfAPlateHasAnAreaInAnyOrientationAsked) {
   EXPECT_LT(beside["turning"]["share"].get<double>(), home["turning"]["share"].get<double>());
   const Outcome text = run({"workspace", kPlane, "--grid", "4mm"});
   EXPECT_NE(text.out.find("turns about z"), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find("+-"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("±"), std::string::npos) << text.out;
 }
 
 TEST(WorkspacePlatform, SaysWhatCannotBe) {

@@ -42,7 +42,8 @@ Json json_of(const Sweep& sweep, Entry entry) {
         known(sweep, which) ? entry(sweep[which]) : Json(nullptr);
   }
   for (const std::string& note : mechanics_notes(sweep.of, known(sweep, MechanicalFigure::lightest),
-                                                 known(sweep, MechanicalFigure::frequency_held)))
+                                                 known(sweep, MechanicalFigure::frequency_held),
+                                                 known(sweep, MechanicalFigure::acceleration)))
     notes.push_back(note);
   document["notes"] = notes;
   return document;
@@ -51,7 +52,8 @@ Json json_of(const Sweep& sweep, Entry entry) {
 template <class Sweep>
 void print_notes(const Sweep& sweep, Sheet& sheet) {
   for (const std::string& note : mechanics_notes(sweep.of, known(sweep, MechanicalFigure::lightest),
-                                                 known(sweep, MechanicalFigure::frequency_held)))
+                                                 known(sweep, MechanicalFigure::frequency_held),
+                                                 known(sweep, MechanicalFigure::acceleration)))
     sheet.paragraph(note, 2, Tint::dim);
 }
 
@@ -113,6 +115,7 @@ SheetFigure map_of(const MechanicalCut& cut, MechanicalFigure which, const Inter
 ShownUnit shown_unit(MechanicalFigure which) {
   if (which <= MechanicalFigure::stiffest) return {"N/mm", 1e-3};
   if (which <= MechanicalFigure::heaviest) return {"g", kMilli};
+  if (which == MechanicalFigure::acceleration) return {"m/s²", 1.0};
   return {"Hz", 0.5 / std::numbers::pi};
 }
 
@@ -139,10 +142,12 @@ std::vector<MechanicsPlace> mechanics_places(const MechanicalSweep& sweep, bool 
   add("heaviest", MechanicalFigure::heaviest, false);
   add("slowest, motors held", MechanicalFigure::frequency_held, true);
   add("fastest, motors held", MechanicalFigure::frequency_held, false);
+  add("least acceleration", MechanicalFigure::acceleration, true);
   return places;
 }
 
-std::vector<std::string> mechanics_notes(const std::optional<Elasticity>& of, bool masses, bool frequencies) {
+std::vector<std::string> mechanics_notes(const std::optional<Elasticity>& of, bool masses, bool frequencies,
+                                         bool accelerations) {
   std::vector<std::string> notes;
   if (of) {
     notes.push_back(fmt::format("Under pure forces, motors standing still; {} give way{}.", to_string(*of),
@@ -153,6 +158,9 @@ std::vector<std::string> mechanics_notes(const std::optional<Elasticity>& of, bo
     notes.emplace_back(
         "Stiffness: not given by the source; neither sections of the links nor the stiffness of every drive.");
   }
+  if (accelerations)
+    notes.emplace_back(
+        "Accelerations by the continuous torques, from rest, the device's own weight taken off.");
   if (!masses) notes.emplace_back("Apparent mass: not given by the source; some joint moves no mass.");
   if (of && !frequencies)
     notes.emplace_back("Natural frequencies: not given by the source; the mass that some joint moves.");
@@ -197,6 +205,17 @@ Json mechanics_json(const MechanicalPostures& sweep) {
   return document;
 }
 
+std::string acceleration_text(const MechanicalSweep& sweep, bool in_plane) {
+  const Statistic& a = sweep[MechanicalFigure::acceleration];
+  if (a.count == 0) return {};
+  return fmt::format(
+      "The continuous torques accelerate the tool in every direction by {} to {} m/s² (mean {}), the device's "
+      "own "
+      "weight taken off; least at {}.",
+      number(a.min), number(a.max), number(a.mean),
+      in_plane ? plane_point_text(a.min_at) : point_text(a.min_at));
+}
+
 std::vector<SheetFigure> mechanics_figures(const std::vector<MechanicalCut>& cuts) {
   std::vector<SheetFigure> figures;
   const auto add = [&](MechanicalFigure which, const char* section, const char* name, const char* caption) {
@@ -206,6 +225,8 @@ std::vector<SheetFigure> mechanics_figures(const std::vector<MechanicalCut>& cut
       figures.push_back(map_of(*cut, which, range, section, name, caption));
   };
   add(MechanicalFigure::heaviest, "inertia", "Apparent mass", "In the heaviest direction.");
+  add(MechanicalFigure::acceleration, "inertia", "Acceleration",
+      "In every direction, continuous, the weight taken off.");
   add(MechanicalFigure::softest, "stiffness", "Stiffness", "In the softest direction, motors held.");
   add(MechanicalFigure::frequency_held, "stiffness", "Natural frequency", "The lowest, motors held.");
   return figures;

@@ -30,7 +30,10 @@ struct MechanicsPlace {
 };
 std::vector<MechanicsPlace> mechanics_places(const MechanicalSweep& sweep, bool in_plane);
 /// Sentences: what gives, and what the source does not give.
-std::vector<std::string> mechanics_notes(const std::optional<Elasticity>& of, bool masses, bool frequencies);
+std::vector<std::string> mechanics_notes(const std::optional<Elasticity>& of, bool masses, bool frequencies,
+                                         bool accelerations);
+/// What the drives can accelerate, in a sentence; empty where that is not known.
+std::string acceleration_text(const MechanicalSweep& sweep, bool in_plane);
 
 /// Heading, table, places and notes.
 void print_mechanics(const MechanicalSweep& sweep, bool in_plane, Sheet& sheet);
@@ -39,8 +42,8 @@ void print_mechanics(const MechanicalPostures& sweep, Sheet& sheet);
 Json mechanics_json(const MechanicalSweep& sweep);
 Json mechanics_json(const MechanicalPostures& sweep);
 
-/// Maps of the heaviest direction, the softest one and the lowest frequency on the cuts, as far as they are
-/// known.
+/// Maps of the heaviest direction, the acceleration, the softest direction and the lowest frequency on the
+/// cuts, as far as they are known.
 std::vector<SheetFigure> mechanics_figures(const std::vector<MechanicalCut>& cuts);
 
 }  // namespace zwidth

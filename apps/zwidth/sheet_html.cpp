@@ -545,6 +545,9 @@ class Page {
     statistics("In the heaviest direction", sheet_.inertia->heaviest, kMilli, "g");
     statistics("Largest joint torque against gravity", sheet_.inertia->gravity_torque, kMilli, "mN m");
     statistics_end();
+    if (sheet_.mechanics)
+      body_ += fmt::format("<p>{}</p>\n",
+                           escaped(acceleration_text(sheet_.mechanics->sweep, sheet_.plane.has_value())));
     show_figures("inertia", "three");
     values_table([](const DescribedValue& value) { return value.table.starts_with("body"); }, true);
   }

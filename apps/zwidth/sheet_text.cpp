@@ -330,6 +330,10 @@ class SheetText {
     rows.push_back(cells("in the heaviest direction", inertia.heaviest, kMilli, "g"));
     rows.push_back(cells("torque against gravity", inertia.gravity_torque, kMilli, "mN m"));
     statistics(rows, inertia.spacing);
+    if (sheet_.mechanics) {
+      const std::string text = acceleration_text(sheet_.mechanics->sweep, sheet_.plane.has_value());
+      if (!text.empty()) text_.paragraph(text, 2);
+    }
   }
 
   void stiffness() {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -86,6 +87,30 @@ std::optional<Elasticity> elasticity_of(const Mechanism& mechanism, const Drives
   return std::nullopt;
 }
 
+// What the continuous torques give the tool in every direction; nothing unless all drives are known.
+std::optional<double> acceleration_of(const Posture& posture, const Drives& drives, const Rates& rate,
+                                      const ActiveMatrix& M) {
+  const Mechanism& mechanism = posture.mechanism();
+  const int n = mechanism.active_count(), linear = mechanism.linear_rows();
+  ActiveVector limit = ActiveVector::Zero(n);
+  for (int i = 0; i < n; ++i) {
+    const auto& drive = drives[static_cast<std::size_t>(i)];
+    if (!drive && !mechanism.is_free(i)) return std::nullopt;
+    if (drive) limit[i] = drive->continuous_torque().usable;
+  }
+  const TorqueRange left = TorqueRange::symmetric(limit).beside(gravity_torques(posture, rate));
+  const Jacobian response = M.ldlt().solve(rate.tool.topRows(linear).transpose()).transpose();
+  if (n != linear) return zonotope({response, left.min, left.max}).inner_radius;
+  // As many joints as directions: a parallelepiped, whose faces are those of one torque at its limit each.
+  const Eigen::FullPivLU<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>> lu(response);
+  if (!lu.isInvertible()) return 0.0;
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> inverse = lu.inverse();
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < n; ++i)
+    least = std::min(least, std::min(left.max[i], -left.min[i]) / inverse.row(i).norm());
+  return std::max(0.0, least);
+}
+
 struct Builders {
   std::int64_t inside = 0;
   std::array<internal::StatisticBuilder, kMechanicalFigureCount> figures;
@@ -114,6 +139,7 @@ const FigureInfo& mechanical_figure_info(int index) {
       {"heaviest", "kg", "apparent mass in the heaviest direction"},
       {"frequency_held", "rad/s", "lowest natural frequency, motors held"},
       {"frequency_free", "rad/s", "lowest natural frequency, motors free"},
+      {"acceleration", "m/s^2", "acceleration in every direction"},
   }};
   return kInfo[static_cast<std::size_t>(index)];
 }
@@ -152,6 +178,8 @@ MechanicalValues mechanical_figures(const Posture& posture, const Drives& drives
   ActiveMatrix M = mass_matrix(posture, rate);
   if (!(M.diagonal().minCoeff() > 0.0)) return values;
   put_masses(mechanism, tool_mobility(rate.tool, M), values);
+  if (const auto acceleration = acceleration_of(posture, drives, rate, M))
+    put(values, MechanicalFigure::acceleration, 0, *acceleration);
   if (!felt) return values;
 
   M.diagonal() -= mechanism.drive_inertia();

@@ -28,8 +28,10 @@ enum class MechanicalFigure {
   heaviest,        ///< in the heaviest direction [kg]
   frequency_held,  ///< lowest natural frequency of links and platform, motors held [rad/s]
   frequency_free,  ///< the same, rotors swinging against the tool [rad/s]
+  acceleration,    ///< that the continuous torques give in every direction, from rest and with the device's own
+                   ///< weight; 0 where that takes all of them [m/s^2]
 };
-inline constexpr int kMechanicalFigureCount = 12;
+inline constexpr int kMechanicalFigureCount = 13;
 
 /// One value per figure, NaN where it is not known or not defined.
 using MechanicalValues = std::array<double, kMechanicalFigureCount>;
@@ -52,7 +54,8 @@ struct KnownStiffness {
 std::optional<KnownStiffness> known_stiffness(const Posture& posture, const Drives& drives);
 
 /// Masses are known if every joint moves some (`drive_inertia` counts), frequencies if links and platform alone
-/// do. Stiffness has no value where the tool is free, nor a mass where it cannot move (it is infinite).
+/// do, the acceleration if every joint that is not moved by the hand has its drive. Stiffness has no value
+/// where the tool is free, nor a mass where it cannot move (it is infinite).
 MechanicalValues mechanical_figures(const Posture& posture, const Drives& drives);
 
 /// Over the points of a lattice in the workspace.

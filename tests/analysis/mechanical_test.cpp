@@ -7,6 +7,7 @@
 
 #include "support/r_cubes.h"
 
+#include "zwidth/analysis/acceleration.h"
 #include "zwidth/analysis/data_sheet.h"
 #include "zwidth/analysis/inertia.h"
 #include "zwidth/description/catalogue.h"
@@ -158,6 +159,30 @@ TEST(Mechanical, FrequenciesFallWithTheSquareRootOfTheMass) {
   EXPECT_GT(figure(light, MechanicalFigure::frequency_free), figure(light, MechanicalFigure::frequency_held));
 }
 
+TEST(Mechanical, AccelerationIsTheInnerRadiusOfThePolytope) {
+  std::mt19937_64 random(93);
+  for (const char* name : {"delta", "five-bar", "r-cube", "seven-dof"}) {
+    const Device device(name);
+    ActiveVector limit(device.mechanism.active_count());
+    for (int i = 0; i < limit.size(); ++i)
+      limit[i] = device.drives[static_cast<std::size_t>(i)]->continuous_torque().usable;
+    int compared = 0;
+    for (std::int64_t sample = 0; sample < 30; ++sample) {
+      const Solution solution = solve_forward(device.mechanism, spread_posture(device.mechanism, sample));
+      if (!solution || solution.conditioning < 1e-2) continue;
+      const Rates all = rates(*solution.posture);
+      const ToolMotion motion = tool_motion(*solution.posture, all, ActiveVector::Zero(limit.size()))
+                                    .rows(0, device.mechanism.linear_rows());
+      const double expected = acceleration_polytope(motion, TorqueRange::symmetric(limit)).inner_radius;
+      const double got =
+          figure(mechanical_figures(*solution.posture, device.drives), MechanicalFigure::acceleration);
+      EXPECT_NEAR(got, expected, 1e-8 * (1.0 + expected)) << name;
+      ++compared;
+    }
+    EXPECT_GT(compared, 5) << name;
+  }
+}
+
 TEST(Mechanical, ACutHasTheFiguresOfItsPoints) {
   for (const char* name : {"r-cube", "five-bar"}) {
     const Device device(name);
@@ -200,16 +225,16 @@ TEST(Mechanical, AMapHasAColumnForWhatIsKnown) {
   WorkspaceMap map = map_workspace(device.mechanism, {.spacing = 0.02});
   const std::size_t before = map.columns().size();
   add_mechanics(device.mechanism, device.drives, map);
-  // Masses along two axes and in two directions; no stiffness.
-  EXPECT_EQ(map.columns().size(), before + 4);
+  // Masses along two axes and in two directions, and acceleration; no stiffness.
+  EXPECT_EQ(map.columns().size(), before + 5);
   EXPECT_EQ(map.columns()[before], "mass_x");
-  EXPECT_EQ(map.more.size(), 4 * map.positions.size());
+  EXPECT_EQ(map.more.size(), 5 * map.positions.size());
   std::ostringstream csv;
   write_csv(map, csv);
   const std::string text = csv.str();
   const std::string first =
       text.substr(text.find('\n') + 1, text.find('\n', text.find('\n') + 1) - text.find('\n') - 1);
-  EXPECT_EQ(static_cast<std::size_t>(std::count(first.begin(), first.end(), ',')) + 1, before + 4);
+  EXPECT_EQ(static_cast<std::size_t>(std::count(first.begin(), first.end(), ',')) + 1, before + 5);
 }
 
 }  // namespace

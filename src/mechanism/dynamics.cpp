@@ -199,11 +199,11 @@ struct BodyJacobian {
 
 }  // namespace
 
-ActiveMatrix mass_matrix(const Posture& posture) {
+ActiveMatrix mass_matrix(const Posture& posture) noexcept {
   return mass_matrix(posture, rates(posture));
 }
 
-ActiveMatrix mass_matrix(const Posture& posture, const Rates& rates) {
+ActiveMatrix mass_matrix(const Posture& posture, const Rates& rates) noexcept {
   const Mechanism& mechanism = posture.mechanism();
   const int n = mechanism.active_count();
   ActiveMatrix M = mechanism.drive_inertia().asDiagonal();
@@ -237,11 +237,11 @@ ActiveMatrix mass_matrix(const Posture& posture, const Rates& rates) {
   return M;
 }
 
-ActiveVector gravity_torques(const Posture& posture) {
+ActiveVector gravity_torques(const Posture& posture) noexcept {
   return gravity_torques(posture, rates(posture));
 }
 
-ActiveVector gravity_torques(const Posture& posture, const Rates& rates) {
+ActiveVector gravity_torques(const Posture& posture, const Rates& rates) noexcept {
   const Mechanism& mechanism = posture.mechanism();
   const Vector3 base = -mechanism.gravity();
   const JointVector still = JointVector::Zero(mechanism.joint_count());
@@ -252,7 +252,7 @@ ActiveVector gravity_torques(const Posture& posture, const Rates& rates) {
 }
 
 ActiveVector inverse_dynamics(const Posture& posture, const ActiveVector& rate,
-                              const ActiveVector& acceleration, const ToolVector& push) {
+                              const ActiveVector& acceleration, const ToolVector& push) noexcept {
   const Rates all = rates(posture);
   ActiveVector tau = bodies_torque(posture, all, rate, acceleration);
   tau += posture.mechanism().drive_inertia().cwiseProduct(acceleration);
@@ -261,7 +261,7 @@ ActiveVector inverse_dynamics(const Posture& posture, const ActiveVector& rate,
 }
 
 ActiveVector forward_dynamics(const Posture& posture, const ActiveVector& rate, const ActiveVector& torque,
-                              const ToolVector& push) {
+                              const ToolVector& push) noexcept {
   const Rates all = rates(posture);
   ActiveVector driving =
       torque - bodies_torque(posture, all, rate, ActiveVector::Zero(posture.mechanism().active_count()));
@@ -269,18 +269,18 @@ ActiveVector forward_dynamics(const Posture& posture, const ActiveVector& rate, 
   return mass_matrix(posture, all).ldlt().solve(driving);
 }
 
-ToolMatrix cartesian_mass(const Jacobian& jacobian, const ActiveMatrix& mass) {
+ToolMatrix cartesian_mass(const Jacobian& jacobian, const ActiveMatrix& mass) noexcept {
   // Lambda^-1 = J M^-1 J^T, the mobility of the tool, inverted along the directions in which the tool can move
   // at all.
   const Jacobian moved = mass.ldlt().solve(jacobian.transpose()).transpose();
   return pseudo_inverse(moved.lazyProduct(jacobian.transpose()));
 }
 
-double kinetic_energy(const Posture& posture, const ActiveVector& rate) {
+double kinetic_energy(const Posture& posture, const ActiveVector& rate) noexcept {
   return 0.5 * rate.dot(mass_matrix(posture) * rate);
 }
 
-double potential_energy(const Posture& posture) {
+double potential_energy(const Posture& posture) noexcept {
   const Mechanism& mechanism = posture.mechanism();
   double V = 0.0;
   for (const BodyModel& body : mechanism.bodies()) {

@@ -100,6 +100,15 @@ std::vector<std::string> warnings_of(const Model& model, const MobilitySample& s
   return warnings;
 }
 
+/// "1 leg, 5 joints, 5 of them active, 2 of which the hand alone moves".
+std::string joints_text(const Mechanism& mechanism) {
+  const int free = mechanism.active_count() - mechanism.driven_count();
+  return fmt::format("{}, {}, {} of them active{}",
+                     counted(static_cast<int>(mechanism.legs().size()), "leg", "legs"),
+                     counted(mechanism.joint_count(), "joint", "joints"), mechanism.active_count(),
+                     free > 0 ? fmt::format(", {} of which the hand alone moves", free) : "");
+}
+
 int check(const CheckArguments& arguments, const Terminal& terminal) {
   Json list = Json::array();
   Sheet sheet(terminal);
@@ -120,6 +129,7 @@ int check(const CheckArguments& arguments, const Terminal& terminal) {
       entry["legs"] = mechanism.legs().size();
       entry["joints"] = mechanism.joint_count();
       entry["active_joints"] = mechanism.active_count();
+      entry["free_joints"] = mechanism.active_count() - mechanism.driven_count();
       entry["bodies"] = model.description.bodies.size();
       entry["drives"] = model.description.drives.size() + model.description.pneumatic_drives.size();
       Json freedom;
@@ -138,9 +148,7 @@ int check(const CheckArguments& arguments, const Terminal& terminal) {
       entry["warnings"] = warnings;
       sheet.title(device, "no problems");
       sheet.row("device", model.description.name, model.description.title);
-      sheet.row("mechanism", family,
-                fmt::format("{} legs, {} joints, {} of them active", mechanism.legs().size(),
-                            mechanism.joint_count(), mechanism.active_count()));
+      sheet.row("mechanism", family, joints_text(mechanism));
       sheet.row("mobility",
                 fmt::format("{}, {}", counted(sample.typical.freedoms, "freedom", "freedoms"),
                             verdict_of(sample.typical)),

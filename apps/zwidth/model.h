@@ -49,7 +49,8 @@ struct NearestPoint {
   double distance = 0.0;               ///< [m]
 };
 
-/// Searches the joint ranges from a raster of starts. Empty where no start closes the loops.
+/// Searches the joint ranges from a raster of starts. Joints that do not matter to the point stay at home, and
+/// an arm takes the posture nearest to home. Any finite position. Empty where no start closes the loops.
 std::optional<NearestPoint> nearest_reachable(const Mechanism& mechanism, const Vector3& position);
 
 }  // namespace zwidth

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "efforts.h"
 #include "sheet_json.h"
 #include "sheet_text.h"
 #include "terminal.h"
@@ -149,7 +150,7 @@ std::string share_text(const Share& share) {
 
 }  // namespace
 
-std::vector<PostureTable> arm_tables(const ArmSheet& arm) {
+std::vector<PostureTable> arm_tables(const ArmSheet& arm, const std::vector<bool>& joint_slides) {
   const PostureSweep& sweep = arm.continuous;
   const std::string postures = fmt::format("{} postures spread evenly over the joint ranges", sweep.solved);
   std::vector<PostureTable> tables;
@@ -180,7 +181,9 @@ std::vector<PostureTable> arm_tables(const ArmSheet& arm) {
                        postures + ". Against pure forces, with rotors and transmissions.");
   inertia.row("in the lightest direction", sweep.lightest, kMilli, "g");
   inertia.row("in the heaviest direction", sweep.heaviest, kMilli, "g");
-  inertia.row("torque against gravity", sweep.gravity_torque, kMilli, "mN m");
+  const bool slides = all_slide(joint_slides);
+  inertia.row(slides ? "force against gravity" : "torque against gravity", sweep.gravity_torque,
+              slides ? 1.0 : kMilli, slides ? "N" : "mN m");
   inertia.into(tables);
 
   TableBuilder resolution("resolution", "Resolution at the tool",

@@ -29,7 +29,7 @@ struct PostureTable {
 };
 
 /// The tables that this sheet has something to say in.
-std::vector<PostureTable> arm_tables(const ArmSheet& arm);
+std::vector<PostureTable> arm_tables(const ArmSheet& arm, const std::vector<bool>& joint_slides);
 
 /// A line of plain facts.
 struct ArmFact {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <set>
 
+#include "efforts.h"
 #include "figure/svg.h"
 #include "mechanics.h"
 #include "model.h"
@@ -393,7 +394,7 @@ class Page {
       section("home", "Home posture");
       facts(home_facts(arm, Mechanism(description_)));
     }
-    for (const PostureTable& table : arm_tables(arm)) {
+    for (const PostureTable& table : arm_tables(arm, sheet_.joint_slides)) {
       section(table.id, table.title);
       how(table.how);
       statistics_head("Over the joint ranges");
@@ -522,8 +523,9 @@ class Page {
         "farthest corner.");
     for (const auto& [name, forces] :
          {std::pair{"Continuous", &*sheet_.continuous}, std::pair{"Peak", &*sheet_.peak}}) {
-      body_ += fmt::format("<h3>{}: {} per joint, limited by the {}</h3>\n", name,
-                           escaped(readable(forces->torque.minCoeff(), "N m")), escaped(forces->limited_by));
+      body_ +=
+          fmt::format("<h3>{}: {} per joint, limited by the {}</h3>\n", name,
+                      escaped(efforts_text(forces->torque, sheet_.joint_slides)), escaped(forces->limited_by));
       statistics_head(sweep().spacing);
       for (size_t k = 0; k < axis_count(); ++k)
         statistics(fmt::format("Pure force along {}", axis(k)), forces->axes[k], 1.0, "N");
@@ -543,7 +545,9 @@ class Page {
       statistics(fmt::format("Along {}", axis(k)), sheet_.inertia->along_axes[k], kMilli, "g");
     statistics("In the lightest direction", sheet_.inertia->lightest, kMilli, "g");
     statistics("In the heaviest direction", sheet_.inertia->heaviest, kMilli, "g");
-    statistics("Largest joint torque against gravity", sheet_.inertia->gravity_torque, kMilli, "mN m");
+    const bool slides = all_slide(sheet_.joint_slides);
+    statistics(slides ? "Largest joint force against gravity" : "Largest joint torque against gravity",
+               sheet_.inertia->gravity_torque, slides ? 1.0 : kMilli, slides ? "N" : "mN m");
     statistics_end();
     if (sheet_.mechanics)
       body_ += fmt::format("<p>{}</p>\n",
@@ -592,13 +596,14 @@ class Page {
     std::string text;
     for (size_t j = 0; j < sheet_.joint_names.size(); ++j) {
       const auto i = static_cast<Eigen::Index>(j);
-      text += fmt::format("<tr>{}{}{}</tr>", cell(sheet_.joint_names[j]),
-                          cell(readable(sheet_.joint_resolution[i], "rad"), "n"),
-                          cell(readable(sheet_.torque_resolution[i], "N m"), "n"));
+      text +=
+          fmt::format("<tr>{}{}{}</tr>", cell(sheet_.joint_names[j]),
+                      cell(readable(sheet_.joint_resolution[i], sheet_.joint_slides[j] ? "m" : "rad"), "n"),
+                      cell(readable(sheet_.torque_resolution[i], effort_unit(sheet_.joint_slides[j])), "n"));
     }
     body_ += fmt::format(
-        "<div class=\"scroll\"><table><tr><th>Joint</th><th class=\"n\">Angle of one count</th><th "
-        "class=\"n\">Torque of one current step</th></tr>{}</table></div>\n",
+        "<div class=\"scroll\"><table><tr><th>Joint</th><th class=\"n\">Step of one count</th><th "
+        "class=\"n\">Torque or force of one current step</th></tr>{}</table></div>\n",
         text);
     if (sheet_.middle && sheet_.middle->force_resolution) {
       std::string steps;

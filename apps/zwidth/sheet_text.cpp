@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <vector>
 
+#include "efforts.h"
 #include "mechanics.h"
 #include "model.h"
 #include "sheet_arm.h"
@@ -118,13 +119,17 @@ class SheetText {
                 note);
     }
     if (!sheet_.joint_ranges.empty()) {
+      const auto& slides = sheet_.joint_slides;
       const bool same =
           std::all_of(sheet_.joint_ranges.begin(), sheet_.joint_ranges.end(),
-                      [&](const Interval& range) { return range == sheet_.joint_ranges.front(); });
+                      [&](const Interval& range) { return range == sheet_.joint_ranges.front(); }) &&
+          std::equal(slides.begin() + 1, slides.end(), slides.begin());
       for (size_t i = 0; i < (same ? 1 : sheet_.joint_ranges.size()); ++i) {
         const Interval& range = sheet_.joint_ranges[i];
         text_.row(same ? "range of every joint" : "range of " + sheet_.joint_names[i],
-                  fmt::format("{}° … {}°", number(range.min * kDegrees), number(range.max * kDegrees)));
+                  slides[i]
+                      ? interval(range.min, range.max, kMilli, "mm")
+                      : fmt::format("{}° … {}°", number(range.min * kDegrees), number(range.max * kDegrees)));
       }
     }
     if (sheet_.moving_mass > 0.0)
@@ -244,7 +249,7 @@ class SheetText {
           reach_facts(arm));
     facts("Orientations of the tool", orientation_facts(arm.orientations, home_turning(arm)));
     facts("Home posture", home_facts(arm, Mechanism(description_)));
-    for (const PostureTable& table : arm_tables(arm)) {
+    for (const PostureTable& table : arm_tables(arm, sheet_.joint_slides)) {
       text_.heading(table.title);
       std::vector<std::vector<std::string>> rows;
       for (const PostureRow& row : table.rows) {
@@ -306,17 +311,13 @@ class SheetText {
       rows.push_back(cells(fmt::format("{}, in the best direction", name), forces->strongest, 1.0, "N"));
     }
     statistics(rows, lattice_spacing());
-    const auto torque = [](const ForceSheet& forces) {
-      const bool same = (forces.torque.array() == forces.torque[0]).all();
-      return same ? readable(forces.torque[0], "N m")
-                  : fmt::format("{} … {}", readable(forces.torque.minCoeff(), "N m"),
-                                readable(forces.torque.maxCoeff(), "N m"));
+    const auto torque = [this](const ForceSheet& forces) {
+      return efforts_text(forces.torque, sheet_.joint_slides);
     };
     text_.paragraph(
-        fmt::format(
-            "Joint torque {} continuous (limited by the {}), {} peak ({}). Device's weight not taken off.",
-            torque(*sheet_.continuous), sheet_.continuous->limited_by, torque(*sheet_.peak),
-            sheet_.peak->limited_by),
+        fmt::format("Joint {} {} continuous (limited by the {}), {} peak ({}). Device's weight not taken off.",
+                    effort_word(sheet_.joint_slides), torque(*sheet_.continuous), sheet_.continuous->limited_by,
+                    torque(*sheet_.peak), sheet_.peak->limited_by),
         2, Tint::dim);
   }
 
@@ -328,7 +329,9 @@ class SheetText {
       rows.push_back(cells(fmt::format("apparent mass along {}", axes[k]), inertia.along_axes[k], kMilli, "g"));
     rows.push_back(cells("in the lightest direction", inertia.lightest, kMilli, "g"));
     rows.push_back(cells("in the heaviest direction", inertia.heaviest, kMilli, "g"));
-    rows.push_back(cells("torque against gravity", inertia.gravity_torque, kMilli, "mN m"));
+    const bool slides = all_slide(sheet_.joint_slides);
+    rows.push_back(cells(slides ? "force against gravity" : "torque against gravity", inertia.gravity_torque,
+                         slides ? 1.0 : kMilli, slides ? "N" : "mN m"));
     statistics(rows, inertia.spacing);
     if (sheet_.mechanics) {
       const std::string text = acceleration_text(sheet_.mechanics->sweep, sheet_.plane.has_value());

@@ -7,6 +7,8 @@
 #include <memory>
 #include <optional>
 
+#include "efforts.h"
+#include "joint_values.h"
 #include "model.h"
 #include "size_balance.h"
 #include "size_pneumatic.h"
@@ -111,16 +113,21 @@ LoadDescription parsed_load(const SizeArguments& arguments, const Description& d
   const bool numbers = text.find(',') != text.npos || text.find_first_of("+-.0123456789") == 0;
   if (known || !numbers) return named("--load", text, description.loads, "load");
   const auto commas = std::count(text.begin(), text.end(), ',');
-  if (commas != 2 && commas != 5) {
-    throw InputError(fmt::format(
-        "--load \"{}\": has {} entries; give three (a force) or six (a force and a moment)", text, commas + 1));
+  // Of a tool in the plane x, y two will do, of one that does not turn a force is all.
+  const bool in_plane = mechanism.linear_rows() == 2;
+  if (commas != 2 && commas != 5 && !(in_plane && commas == 1)) {
+    throw InputError(fmt::format("--load \"{}\": has {} {}; give {}", text, commas + 1,
+                                 commas == 0 ? "entry" : "entries",
+                                 in_plane                 ? "two (a force along x, y) or three"
+                                 : mechanism.tool_turns() ? "three (a force) or six (a force and a moment)"
+                                                          : "three (a force); the tool takes no moment"));
   }
-  std::vector<Dimension> dimensions(3, Dimension::force);
+  std::vector<Dimension> dimensions(commas == 1 ? 2 : 3, Dimension::force);
   if (commas == 5) dimensions.insert(dimensions.end(), 3, Dimension::torque);
   const std::vector<double> values = parsed("--load", text, dimensions);
   LoadDescription load;
   load.name = text;
-  load.force = Vector3(values[0], values[1], values[2]);
+  load.force = Vector3(values[0], values[1], commas > 1 ? values[2] : 0.0);
   if (commas == 5) load.moment = Vector3(values[3], values[4], values[5]);
   if (commas == 5 && !mechanism.tool_turns()) {
     throw InputError(
@@ -150,6 +157,12 @@ std::string bar(double utilisation) {
   return text;
 }
 
+/// Coordinates [mm] in whole numbers, none of them -0.
+std::string millimetres(const Vector3& at) {
+  const auto whole = [](double x) { return std::round(x) + 0.0; };
+  return fmt::format("{:.0f}, {:.0f}, {:.0f}", whole(at.x()), whole(at.y()), whole(at.z()));
+}
+
 std::string percent(double share) {
   return std::isfinite(share) ? fmt::format("{} %", number(100.0 * share, 3)) : "–";
 }
@@ -169,7 +182,10 @@ class Answer {
     } else {
       load_cases();
     }
-    document_["balance"] = write_balance(model_, postures_, sheet_);
+    std::vector<Posture> postures;
+    postures.reserve(postures_.size());
+    for (const SizingPosture& one : postures_) postures.push_back(one.posture);
+    document_["balance"] = write_balance(model_.description, mechanism_, postures, sheet_);
     margins_and_parts();
     document_["ok"] = ok_;
     sheet_.gap();
@@ -184,6 +200,16 @@ class Answer {
   }
 
  private:
+  const char* unit_of(int active) const { return effort_unit(joint_slides(mechanism_, active)); }
+  /// The word that fits the driven joints: all turn, all slide, or some of both.
+  const char* efforts(const char* turning, const char* sliding, const char* both) const {
+    int slides = 0, turns = 0;
+    for (int j = 0; j < mechanism_.active_count(); ++j) {
+      if (!mechanism_.is_free(j)) ++(joint_slides(mechanism_, j) ? slides : turns);
+    }
+    return slides == 0 ? turning : turns == 0 ? sliding : both;
+  }
+
   std::vector<LoadDescription> wanted_loads() const {
     if (arguments_.loads.empty()) return model_.description.loads;
     std::vector<LoadDescription> loads;
@@ -194,12 +220,8 @@ class Answer {
 
   /// False if the position that was asked for cannot be reached, which it then says.
   bool find_postures() {
-    const std::vector<Dimension> dimensions = active_joint_dimensions(model_.description.mechanism);
-    for (const std::string& text : arguments_.joints) {
-      const std::vector<double> values = parsed("--joints", text, dimensions);
-      postures_.push_back(
-          posture_of(mechanism_, text, Eigen::Map<const Eigen::VectorXd>(values.data(), values.size())));
-    }
+    for (const std::string& text : arguments_.joints)
+      postures_.push_back(posture_of(mechanism_, text, joint_values("--joints", text, mechanism_)));
     std::vector<PostureDescription> wanted;
     for (const std::string& text : arguments_.postures)
       wanted.push_back(named("--posture", text, model_.description.postures, "posture"));
@@ -226,7 +248,10 @@ class Answer {
   }
 
   bool reach(const std::string& text) {
-    const std::vector<double> p = parsed("--position", text, std::vector<Dimension>(3, Dimension::length));
+    const bool in_plane = mechanism_.linear_rows() == 2 && std::count(text.begin(), text.end(), ',') == 1;
+    std::vector<double> p =
+        parsed("--position", text, std::vector<Dimension>(in_plane ? 2 : 3, Dimension::length));
+    p.resize(3, 0.0);
     if (mechanism_.tool_turns()) {
       throw InputError(
           fmt::format("--position \"{}\": the tool of {} turns, so a position leaves its posture open; "
@@ -283,7 +308,7 @@ class Answer {
         fmt::format("The drives can hold {} in every direction {}, for as long as one likes, on top of the "
                     "device's own weight. Another load: --load FX,FY,FZ.",
                     quantity(force, 1.0, "N"), where_));
-    sheet_.heading("Torque");
+    sheet_.heading(efforts("Torque", "Force", "Torque and force"));
     Json joints = Json::array();
     std::vector<std::vector<std::string>> rows;
     const ActiveVector peak = model_.peak_torque();
@@ -301,12 +326,14 @@ class Answer {
                         {"peak", json_number(peak[j])},
                         {"ok", good}});
       const Vector3 at = required[index].at * kMilli;
-      rows.push_back({name, number(required[index].torque), number(gravity[index].torque), number(limit[j]),
-                      number(peak[j]), percent(required[index].torque / limit[j]), good ? "✓" : "✗",
-                      fmt::format("{:.0f}, {:.0f}, {:.0f}", at.x(), at.y(), at.z())});
+      const char* unit = unit_of(j);
+      const double weight = gravity[index].torque < 1e-12 * limit[j] ? 0.0 : gravity[index].torque;
+      rows.push_back({name, readable(required[index].torque, unit), readable(weight, unit),
+                      readable(limit[j], unit), readable(peak[j], unit),
+                      percent(required[index].torque / limit[j]), good ? "✓" : "✗", millimetres(at)});
       demands_.push_back({required[index].torque, 0.0});
     }
-    sheet_.table({"joint", "required", "gravity", "continuous", "peak N m", "used", "", "worst at mm"}, rows);
+    sheet_.table({"joint", "required", "gravity", "continuous", "peak", "used", "", "worst at mm"}, rows);
     document_["joints"] = joints;
   }
 
@@ -373,7 +400,7 @@ class Answer {
     const SizingPosture& posture = postures_[static_cast<size_t>(index)];
     if (!posture.name.empty()) return posture.name;
     const Vector3 at = posture.posture.tool().position * kMilli;
-    return fmt::format("{:.0f}, {:.0f}, {:.0f} mm", at.x(), at.y(), at.z());
+    return millimetres(at) + " mm";
   }
 
   void joint_table(const Sizing& sizing) {
@@ -419,8 +446,9 @@ class Answer {
         demands[to_string(kind)] = item;
         const std::string limit = drive ? to_string(limit_of.limited_by) : "no drive";
         rows[kind == LoadKind::peak ? 1 : 0].push_back(
-            {name, number(std::abs(demand.torque)), number(demand.available), percent(demand.utilisation),
-             demand.ok ? "✓" : "✗ " + limit, posture_name(demand.posture), load.name});
+            {name, readable(std::abs(demand.torque), unit_of(j)), readable(demand.available, unit_of(j)),
+             percent(demand.utilisation), demand.ok ? "✓" : "✗ " + limit, posture_name(demand.posture),
+             load.name});
       }
       entry["demands"] = demands;
       joints.push_back(entry);
@@ -428,8 +456,9 @@ class Answer {
     for (const LoadKind kind : {LoadKind::continuous, LoadKind::peak}) {
       auto& of_kind = rows[kind == LoadKind::peak ? 1 : 0];
       if (of_kind.empty()) continue;
-      sheet_.heading(kind == LoadKind::peak ? "Torque for a short time" : "Torque for ever");
-      sheet_.table({"joint", "required", "of N m", "used", "", "posture", "load"}, of_kind, false);
+      sheet_.heading(fmt::format("{} for {}", efforts("Torque", "Force", "Torque and force"),
+                                 kind == LoadKind::peak ? "a short time" : "ever"));
+      sheet_.table({"joint", "required", "of", "used", "", "posture", "load"}, of_kind, false);
     }
     document_["joints"] = joints;
   }
@@ -453,6 +482,7 @@ class Answer {
     // Joints that share a drive's description are answered once, for the one that is asked most.
     struct Group {
       const Drive* drive;
+      bool slides;
       std::string joints;
       DriveDemand demand;
     };
@@ -464,19 +494,22 @@ class Answer {
       const auto& drive = model_.drives[static_cast<size_t>(j)];
       if (!drive) continue;
       auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& other) {
-        return other.drive->description() == drive->description();
+        return other.slides == joint_slides(mechanism_, j) &&
+               other.drive->description() == drive->description();
       });
-      if (group == groups.end()) group = groups.insert(groups.end(), Group{&*drive, "", {}});
+      if (group == groups.end())
+        group = groups.insert(groups.end(), Group{&*drive, joint_slides(mechanism_, j), "", {}});
       group->joints += (group->joints.empty() ? "" : ", ") + mechanism_.active_names()[static_cast<size_t>(j)];
       group->demand.continuous = std::max(group->demand.continuous, demand.continuous);
       group->demand.peak = std::max(group->demand.peak, demand.peak);
     }
     Json drives = Json::array();
-    for (const Group& group : groups) drives.push_back(of_drive(*group.drive, group.joints, group.demand));
+    for (const Group& group : groups)
+      drives.push_back(of_drive(*group.drive, group.joints, group.demand, group.slides));
     document_["drives"] = drives;
   }
 
-  Json of_drive(const Drive& drive, const std::string& names, const DriveDemand& demand) {
+  Json of_drive(const Drive& drive, const std::string& names, const DriveDemand& demand, bool slides) {
     Json entry;
     entry["joints"] = names;
     entry["torque"] = json_number(demand.continuous > 0.0 ? demand.continuous : demand.peak);
@@ -502,7 +535,8 @@ class Answer {
                         readable(margin.capability, margin.unit), percent(used), bar(used),
                         margin.ok ? "✓" : "✗"});
       }
-      sheet_.heading(fmt::format("Margins of the drive of {} at {}{}", names, readable(torque, "N m"),
+      sheet_.heading(fmt::format("Margins of the drive of {} at {}{}", names,
+                                 readable(torque, effort_unit(slides)),
                                  kind == LoadKind::peak ? " for a short time" : ""));
       sheet_.table({"", "demand", "limit", "used", "", ""}, rows);
       if (kind == LoadKind::peak) heat(drive, torque, entry);
@@ -523,7 +557,7 @@ class Answer {
           2, Tint::warning);
     }
     entry["broken_rules"] = broken;
-    parts(drive, demand, entry);
+    parts(drive, demand, slides, entry);
     return entry;
   }
 
@@ -536,7 +570,8 @@ class Answer {
                           : "The winding bears this for as long as one likes.");
   }
 
-  void parts(const Drive& drive, const DriveDemand& demand, Json& entry) {
+  void parts(const Drive& drive, const DriveDemand& demand, bool slides, Json& entry) {
+    const char* felt = slides ? "holds for ever, felt mass" : "holds for ever, felt inertia";
     Json list = Json::array();
     std::vector<std::vector<std::string>> rows, pairs;
     for (const DriveCandidate& candidate : drive_candidates(drive, catalogue(), demand)) {
@@ -550,8 +585,8 @@ class Answer {
                       {"utilisation", json_number(candidate.utilisation)},
                       {"reason", candidate.reason}});
       const std::string verdict =
-          (candidate.fits ? fmt::format("✓ {}, {}", readable(candidate.continuous, "N m", 3),
-                                        readable(candidate.reflected_inertia, "kg m^2", 3))
+          (candidate.fits ? fmt::format("✓ {}, {}", readable(candidate.continuous, effort_unit(slides), 3),
+                                        readable(candidate.reflected_inertia, slides ? "kg" : "kg m^2", 3))
                           : "✗ " + candidate.reason) +
           (candidate.used ? " (in use)" : "");
       if (candidate.kind != "motor and gearhead") {
@@ -562,10 +597,10 @@ class Answer {
     }
     entry["parts"] = list;
     sheet_.heading("Parts of the catalogue that would do, all else kept");
-    sheet_.table({"kind", "part", "holds for ever, felt inertia"}, rows, false);
+    sheet_.table({"kind", "part", felt}, rows, false);
     if (!pairs.empty()) {
       sheet_.gap();
-      sheet_.table({"motor and gearhead", "holds for ever, felt inertia"}, pairs, false);
+      sheet_.table({"motor and gearhead", felt}, pairs, false);
     }
   }
 
@@ -583,26 +618,36 @@ class Answer {
   std::vector<DriveDemand> demands_;  // of each joint that is not free
 };
 
-std::optional<Vector3> vector_option(const char* option, const std::string& text, Dimension dimension) {
-  if (text.empty()) return std::nullopt;
-  const ParsedQuantities values = parse_quantity_list(text, std::vector<Dimension>(3, dimension));
-  if (!values)
-    throw InputError(fmt::format("{} \"{}\": {}{}", option, text, values.rule,
-                                 values.advice.empty() ? "" : "; " + values.advice));
-  return Vector3(values.values[0], values.values[1], values.values[2]);
+/// What is asked about a device that cylinders move.
+PneumaticSizeRequest pneumatic_request(const SizeArguments& arguments, const Description& description) {
+  const Mechanism mechanism(description);
+  PneumaticSizeRequest request{.json = arguments.json};
+  if (arguments.loads.empty()) request.loads = description.loads;
+  for (const std::string& text : arguments.loads)
+    request.loads.push_back(parsed_load(arguments, description, mechanism, text));
+  for (const std::string& text : arguments.joints)
+    request.postures.emplace_back(text, joint_values("--joints", text, mechanism));
+  std::vector<PostureDescription> wanted;
+  for (const std::string& text : arguments.postures)
+    wanted.push_back(named("--posture", text, description.postures, "posture"));
+  const bool nothing_said = arguments.joints.empty() && wanted.empty() && arguments.position.empty();
+  if (nothing_said && !request.loads.empty()) wanted = description.postures;
+  for (const PostureDescription& one : wanted) {
+    request.postures.emplace_back(one.name,
+                                  Eigen::Map<const Eigen::VectorXd>(one.joints.data(), one.joints.size()));
+  }
+  if (!arguments.position.empty()) {
+    const std::vector<double> p =
+        parsed("--position", arguments.position, std::vector<Dimension>(3, Dimension::length));
+    request.position = Vector3(p[0], p[1], p[2]);
+  }
+  return request;
 }
 
 int size(const SizeArguments& arguments, const Terminal& terminal) {
   const Description description = read_device(arguments);
   if (!description.pneumatic_drives.empty()) {
-    if (arguments.loads.size() > 1)
-      throw InputError("--load: pneumatic devices are sized for one load at a time; give one");
-    const std::string load = arguments.loads.empty() ? "" : arguments.loads.front();
-    const PneumaticSizeRequest request{
-        .load = vector_option("--load", load, Dimension::force),
-        .position = vector_option("--position", arguments.position, Dimension::length),
-        .json = arguments.json};
-    return size_pneumatic(description, request, terminal);
+    return size_pneumatic(description, pneumatic_request(arguments, description), terminal);
   }
   const Model model(description);
   if (!model.driven())

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include "efforts.h"
+
 #include "zwidth/analysis/balance.h"
 #include "zwidth/mechanism/dynamics.h"
 
@@ -12,9 +14,20 @@ namespace zwidth {
 
 namespace {
 
-double total(const std::vector<Vector3>& moments) {
+/// How many of an arm's joints, from the base on, have axes that keep along gravity: their links turn about it
+/// and weigh on no joint, however their masses lie.
+size_t level_joints(const Mechanism& mechanism) {
+  size_t count = 0;
+  while (count < mechanism.joints().size() &&
+         mechanism.joints()[count].axis.cross(mechanism.gravity().normalized()).norm() < 1e-9)
+    ++count;
+  return count;
+}
+
+/// Of the links that weigh on a joint.
+double total(const std::vector<Vector3>& moments, size_t level) {
   double sum = 0.0;
-  for (const Vector3& moment : moments) sum += moment.squaredNorm();
+  for (size_t j = level; j < moments.size(); ++j) sum += moments[j].squaredNorm();
   return std::sqrt(sum);
 }
 
@@ -25,14 +38,15 @@ struct Best {
   double residual = 0.0;  // [kg m]
   double way = 0.0;       // that it moves [m]
 };
-std::optional<Best> best_counterweight(const Description& description, const std::vector<Vector3>& moments) {
-  const double nothing = 1e-12 * (1.0 + total(moments));
+std::optional<Best> best_counterweight(const Description& description, const std::vector<Vector3>& moments,
+                                       size_t level) {
+  const double nothing = 1e-12 * (1.0 + total(moments, level));
   std::optional<Best> best;
   for (size_t i = 0; i < description.bodies.size(); ++i) {
     const std::optional<BalancedBody> moved = balanced_body(description, i);
     if (!moved) continue;
     const BodyDescription& now = description.bodies[i];
-    const Best one{i, *moved, total(moved->residual),
+    const Best one{i, *moved, total(moved->residual, level),
                    (moved->body.centre - now.centre).norm() + (moved->body.pivot - now.pivot).norm()};
     const bool better = !best || one.residual < best->residual - nothing ||
                         (one.residual < best->residual + nothing && one.way < best->way);
@@ -55,15 +69,13 @@ Json counterweight_json(const Best& best) {
 
 }  // namespace
 
-Json write_balance(const Model& model, std::span<const SizingPosture> postures, Sheet& sheet) {
-  const Mechanism& mechanism = model.mechanism;
+Json write_balance(const Description& description, const Mechanism& mechanism,
+                   std::span<const Posture> postures, Sheet& sheet) {
   if (moving_mass(mechanism) == 0.0) return nullptr;
-  std::vector<Posture> all;
-  all.reserve(postures.size());
-  for (const SizingPosture& one : postures) all.push_back(one.posture);
-  const BalanceResidual residual = balance_residual(all);
+  const BalanceResidual residual = balance_residual(postures);
   const std::vector<Vector3> moments = first_moments(mechanism);
   const double g = mechanism.gravity().norm();
+  const size_t level = level_joints(mechanism);
 
   sheet.heading("Static balance");
   Json joints = Json::array();
@@ -75,21 +87,22 @@ Json write_balance(const Model& model, std::span<const SizingPosture> postures, 
     if (!moments.empty()) {
       const Vector3& b = moments[static_cast<size_t>(mechanism.active_joint(i))];
       joint["moment"] = json_array(b);
-      moment = number(g * b.norm() * kMilli);
+      moment = static_cast<size_t>(i) < level ? "turns level" : readable(g * b.norm(), "N m");
     }
     joints.push_back(joint);
-    rows.push_back({name, number(residual.torque[i] * kMilli), moment});
+    const double held = residual.torque[i] < 1e-12 * residual.torque.maxCoeff() ? 0.0 : residual.torque[i];
+    rows.push_back({name, readable(held, effort_unit(joint_slides(mechanism, i))), moment});
   }
   const bool arm = !moments.empty();
   if (!arm) {
     for (auto& row : rows) row.pop_back();
   }
-  sheet.table(arm ? std::vector<std::string>{"joint", "weight held, at worst mN m", "residual moment mN m"}
-                  : std::vector<std::string>{"joint", "weight held, at worst mN m"},
+  sheet.table(arm ? std::vector<std::string>{"joint", "weight held, at worst", "residual moment"}
+                  : std::vector<std::string>{"joint", "weight held, at worst"},
               rows);
 
   double lightest = std::numeric_limits<double>::infinity(), heaviest = -lightest;
-  for (const Posture& posture : all) {
+  for (const Posture& posture : postures) {
     const double mass = weight_at_tool(posture).mass;
     if (!std::isfinite(mass)) continue;
     lightest = std::min(lightest, mass);
@@ -106,8 +119,8 @@ Json write_balance(const Model& model, std::span<const SizingPosture> postures, 
              {"stray", json_number(residual.stray)},
              {"weight_at_tool", {json_number(lightest), json_number(heaviest)}}};
   entry["counterweight"] = nullptr;
-  if (const std::optional<Best> best = arm ? best_counterweight(model.description, moments) : std::nullopt) {
-    const BodyDescription &now = model.description.bodies[best->body], &then = best->balanced.body;
+  if (const std::optional<Best> best = arm ? best_counterweight(description, moments, level) : std::nullopt) {
+    const BodyDescription &now = description.bodies[best->body], &then = best->balanced.body;
     entry["counterweight"] = counterweight_json(*best);
     const double left = g * best->residual;
     std::string text = fmt::format("Nearest to balance comes body[{}], {} on {}, ", best->body,

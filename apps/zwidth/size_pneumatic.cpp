@@ -4,8 +4,14 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <memory>
+
+#include "efforts.h"
+#include "size_balance.h"
 
 #include "zwidth/analysis/joint_torque.h"
+#include "zwidth/analysis/statics.h"
+#include "zwidth/description/names.h"
 #include "zwidth/mechanism/dynamics.h"
 #include "zwidth/mechanism/families.h"
 #include "zwidth/mechanism/jacobian.h"
@@ -24,6 +30,7 @@ struct Demand {
   double force = 0.0;      ///< magnitude [N]
   double available = 0.0;  ///< [N]
   std::size_t posture = kNowhere;
+  std::size_t load = kNowhere;
 
   double used() const {
     return available > 0.0 ? force / available : force > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
@@ -40,7 +47,8 @@ struct JointDemand {
 class PneumaticSizing {
  public:
   PneumaticSizing(const Description& description, const PneumaticSizeRequest& request, const Terminal& terminal)
-      : description_(without_free_joints(description)),
+      : full_(description),
+        description_(without_free_joints(description)),
         mechanism_(description_),
         drives_(joint_pneumatic_drives(description_, mechanism_)),
         request_(request),
@@ -48,22 +56,56 @@ class PneumaticSizing {
 
   int run() {
     for (int j = 0; j < mechanism_.active_count(); ++j) {
-      if (drives_[static_cast<std::size_t>(j)]) continue;
+      if (drives_[static_cast<std::size_t>(j)] || mechanism_.is_free(j)) continue;
       throw InputError(
           fmt::format("{}: {} has no cylinder; drives of both kinds, or none, are not sized together",
                       description_.name, mechanism_.active_names()[static_cast<std::size_t>(j)]));
     }
     if (!gather()) return kNo;
     guarantee();
-    if (request_.load) ask(*request_.load);
-    if (!request_.load) ask_every_direction(guaranteed_);
+    demands_.assign(drives_.size(), {});
+    for (std::size_t l = 0; l < request_.loads.size(); ++l) ask(l);
+    if (request_.loads.empty()) ask_every_direction(guaranteed_);
     return answer();
   }
 
  private:
-  /// The postures to look at; a raster of the joint ranges, or the one of a position.
+  /// The posture of all active joints, with the free ones held where they are given.
+  Posture posture_of(const std::string& name, const ActiveVector& joints) {
+    Description held = full_;
+    ActiveVector driven(mechanism_.active_count());
+    Eigen::Index next = 0;
+    const Mechanism mechanism(full_);
+    const bool reduced = mechanism.active_count() != mechanism_.active_count();
+    std::vector<double> free;
+    for (int j = 0; j < mechanism.active_count(); ++j) {
+      if (!reduced || !mechanism.is_free(j)) {
+        driven[next++] = joints[j];
+      } else {
+        free.push_back(joints[j]);
+      }
+    }
+    if (auto* arm = std::get_if<SerialDescription>(&held.mechanism); arm != nullptr && reduced) {
+      auto value = free.begin();
+      for (SerialJointDescription& row : arm->joints) {
+        if (row.free && row.type != SerialJointType::fixed) row.home = *value++;
+      }
+    }
+    held_.push_back(std::make_unique<Mechanism>(without_free_joints(held)));
+    const Solution solution = solve_forward(*held_.back(), driven);
+    if (!solution)
+      throw InputError(fmt::format("posture \"{}\": {}; see `zwidth at {}`", name, to_string(solution.status),
+                                   description_.name));
+    return *solution.posture;
+  }
+
+  /// The postures to look at: those given, or a raster of the joint ranges.
   bool gather() {
     const int n = mechanism_.active_count();
+    for (const auto& [name, joints] : request_.postures) {
+      postures_.push_back(posture_of(name, joints));
+      names_.push_back(name);
+    }
     if (request_.position) {
       const Solution solution = solve_inverse(mechanism_, Pose{*request_.position, Matrix3::Identity()});
       if (!solution || solution.status == SolveStatus::joint_limit) {
@@ -74,8 +116,9 @@ class PneumaticSizing {
         return false;
       }
       postures_.push_back(*solution.posture);
-      return true;
+      names_.push_back(point_text(*request_.position));
     }
+    if (!postures_.empty()) return true;
     int per_joint = 2;
     while (per_joint < 25 && std::pow(per_joint + 1, n) <= 16000.0) ++per_joint;
     std::vector<int> index(static_cast<std::size_t>(n), 0);
@@ -110,7 +153,8 @@ class PneumaticSizing {
       const ActiveVector both = either_way(range);
       double weakest = std::numeric_limits<double>::infinity();
       for (int j = 0; j < mechanism_.active_count(); ++j) {
-        if (J.col(j).norm() > 0.0) weakest = std::min(weakest, both[j] / J.col(j).norm());
+        if (J.col(j).norm() > kZeroRow * J.norm() && !mechanism_.is_free(j))
+          weakest = std::min(weakest, both[j] / J.col(j).norm());
       }
       if (weakest < guaranteed_) {
         guaranteed_ = weakest;
@@ -127,32 +171,29 @@ class PneumaticSizing {
     if (!std::isfinite(guaranteed_)) guaranteed_ = 0.0;
   }
 
-  void ask(const Vector3& load) {
-    demands_.assign(drives_.size(), {});
+  void ask(std::size_t load) {
     for (std::size_t i = 0; i < postures_.size(); ++i) {
-      const Rates rate_maps = rates(postures_[i]);
-      const ActiveVector gravity = gravity_torques(postures_[i], rate_maps);
-      const ActiveVector torque =
-          gravity + torques_for_load(rate_maps.tool.topRows(mechanism_.linear_rows()), load);
-      for (int j = 0; j < torque.size(); ++j) demand(i, j, torque[j], gravity[j]);
+      const ActiveVector gravity = gravity_torques(postures_[i]);
+      const ActiveVector torque = gravity + load_torques(postures_[i], request_.loads[load]);
+      for (int j = 0; j < torque.size(); ++j) demand(i, load, j, torque[j], gravity[j]);
     }
   }
 
   /// A force of one size in the direction that is worst for each joint.
   void ask_every_direction(double force) {
-    demands_.assign(drives_.size(), {});
     for (std::size_t i = 0; i < postures_.size(); ++i) {
       const Rates rate_maps = rates(postures_[i]);
       const ActiveVector gravity = gravity_torques(postures_[i], rate_maps);
       for (int j = 0; j < gravity.size(); ++j) {
         const double span = force * rate_maps.tool.topRows(mechanism_.linear_rows()).col(j).norm();
-        demand(i, j, gravity[j] + span, gravity[j]);
-        demand(i, j, gravity[j] - span, gravity[j]);
+        demand(i, kNowhere, j, gravity[j] + span, gravity[j]);
+        demand(i, kNowhere, j, gravity[j] - span, gravity[j]);
       }
     }
   }
 
-  void demand(std::size_t posture, int joint, double torque, double gravity) {
+  void demand(std::size_t posture, std::size_t load, int joint, double torque, double gravity) {
+    if (mechanism_.is_free(joint)) return;  // the hand's
     JointDemand& asked = demands_[static_cast<std::size_t>(joint)];
     const PneumaticDrive& drive = *drives_[static_cast<std::size_t>(joint)];
     asked.torque = std::max(asked.torque, std::abs(torque));
@@ -166,22 +207,28 @@ class PneumaticSizing {
     const Interval range = drive.force_range();
     Demand& side = force >= 0.0 ? asked.push : asked.pull;
     if (std::abs(force) >= side.force) {
-      side = {std::abs(force), force >= 0.0 ? range.max : -range.min, posture};
+      side = {std::abs(force), force >= 0.0 ? range.max : -range.min, posture, load};
     }
   }
 
   int answer() {
     Json document;
     document["device"] = description_.name;
-    document["where"] = request_.position ? "position" : "workspace";
-    document["free_joints_at_home"] = true;
+    const bool workspace = names_.empty(), position = request_.position && names_.size() == 1;
+    document["where"] = workspace ? "workspace" : position ? "position" : "postures";
+    document["free_joints_at_home"] = request_.postures.empty();
     sheet_.title(fmt::format("{}: cylinders", description_.name),
-                 request_.position ? "at one position" : "anywhere in the workspace");
-    if (request_.load) {
-      document["load"] = json_array(*request_.load);
-      sheet_.row("load", fmt::format("({}, {}, {}) N", number(request_.load->x()), number(request_.load->y()),
-                                     number(request_.load->z())));
+                 workspace  ? "anywhere in the workspace"
+                 : position ? "at one position"
+                            : fmt::format("in {} posture{}", names_.size(), names_.size() == 1 ? "" : "s"));
+    Json loads = Json::array();
+    for (const LoadDescription& load : request_.loads) {
+      loads.push_back(
+          {{"name", load.name}, {"force", json_array(load.force)}, {"moment", json_array(load.moment)}});
+      sheet_.row(request_.loads.size() == 1 ? "load" : load.name, load_text(load));
     }
+    if (request_.loads.size() == 1) document["load"] = json_array(request_.loads.front().force);
+    document["loads"] = loads;
     document["guaranteed_force"] = json_number(guaranteed_);
     sheet_.row(
         "force in every direction", readable(guaranteed_, "N"),
@@ -191,7 +238,7 @@ class PneumaticSizing {
     const char* const names[] = {"x", "y", "z"};
     for (std::size_t r = 0; r < axis_.size() / 2; ++r) {
       axes.push_back({json_number(-axis_[2 * r + 1]), json_number(axis_[2 * r])});
-      rows.push_back({names[r], readable(axis_[2 * r], "N"), readable(axis_[2 * r + 1], "N")});
+      rows.push_back({names[r], force_text(axis_[2 * r]), force_text(axis_[2 * r + 1])});
     }
     document["axis_force"] = axes;
     sheet_.heading("Force alone along an axis, at every posture");
@@ -201,6 +248,7 @@ class PneumaticSizing {
     Json joints = Json::array();
     rows.clear();
     for (std::size_t j = 0; j < drives_.size(); ++j) {
+      if (!drives_[j]) continue;
       const JointDemand& asked = demands_[j];
       const bool good =
           !asked.dead_point && asked.push.used() <= 1.0 + kRounding && asked.pull.used() <= 1.0 + kRounding;
@@ -216,17 +264,28 @@ class PneumaticSizing {
       joints.push_back(entry);
       for (const auto& [name, side] : {std::pair{"push", &asked.push}, std::pair{"pull", &asked.pull}}) {
         if (side->posture == kNowhere) continue;
-        const Vector3 at = kMilli * postures_[side->posture].tool().position;
-        rows.push_back({mechanism_.active_names()[j], name, readable(side->force, "N"),
-                        readable(side->available, "N"), fmt::format("{} %", number(100.0 * side->used(), 3)),
-                        side->used() <= 1.0 + kRounding ? "✓" : "✗ saturated",
-                        fmt::format("{:.0f}, {:.0f}, {:.0f}", at.x(), at.y(), at.z())});
+        std::vector<std::string> row{mechanism_.active_names()[j],
+                                     name,
+                                     readable(side->force, "N"),
+                                     readable(side->available, "N"),
+                                     fmt::format("{} %", number(100.0 * side->used(), 3)),
+                                     side->used() <= 1.0 + kRounding ? "✓" : "✗ saturated",
+                                     place_text(*side)};
+        if (request_.loads.size() > 1) row.push_back(request_.loads[side->load].name);
+        rows.push_back(row);
       }
+      if (asked.dead_point)
+        rows.push_back({mechanism_.active_names()[j], "", "no lever", "", "", "✗ dead point", ""});
     }
     document["joints"] = joints;
-    sheet_.heading(request_.load ? "Cylinder forces under the load"
-                                 : "Cylinder forces under the force in every direction");
-    sheet_.table({"joint", "", "required", "available", "used", "", "worst at mm"}, rows);
+    sheet_.heading(request_.loads.empty()      ? "Cylinder forces under the force in every direction"
+                   : request_.loads.size() > 1 ? "Cylinder forces under the loads"
+                                               : "Cylinder forces under the load");
+    std::vector<std::string> columns{"joint", "", "required", "available", "used", "", "worst at"};
+    if (request_.loads.size() > 1) columns.emplace_back("load");
+    for (auto& row : rows) row.resize(columns.size());
+    sheet_.table(columns, rows, false);
+    document["balance"] = write_balance(description_, mechanism_, postures_, sheet_);
     document["drives"] = drives(all_good);
     document["ok"] = all_good;
     sheet_.gap();
@@ -240,8 +299,26 @@ class PneumaticSizing {
     return all_good ? kDone : kNo;
   }
 
+  static std::string force_text(double force) {
+    return std::isfinite(force) ? readable(force, "N") : "unlimited";
+  }
+  static std::string load_text(const LoadDescription& load) {
+    const auto text = [](const Vector3& v, const char* unit) {
+      return fmt::format("({}, {}, {}) {}", number(v.x()), number(v.y()), number(v.z()), unit);
+    };
+    return text(load.force, "N") + (load.moment.isZero(0.0) ? "" : ", " + text(load.moment, "N m"));
+  }
+  std::string place_text(const Demand& side) const {
+    if (!names_.empty() && !request_.postures.empty()) return names_[side.posture];
+    const Vector3 at = kMilli * postures_[side.posture].tool().position;
+    const auto whole = [](double x) { return std::round(x) + 0.0; };  // no -0
+    return fmt::format("{:.0f}, {:.0f}, {:.0f} mm", whole(at.x()), whole(at.y()), whole(at.z()));
+  }
+
   Json json_of(const Demand& side) const {
     Json entry;
+    if (side.posture != kNowhere && !names_.empty()) entry["posture"] = names_[side.posture];
+    if (side.load != kNowhere) entry["load"] = request_.loads[side.load].name;
     entry["required"] = json_number(side.force);
     entry["available"] = side.posture == kNowhere ? Json(nullptr) : json_number(side.available);
     entry["utilisation"] = json_number(side.used());
@@ -253,6 +330,7 @@ class PneumaticSizing {
   Json drives(bool& all_good) {
     Json list = Json::array();
     for (std::size_t j = 0; j < drives_.size(); ++j) {
+      if (!drives_[j]) continue;
       const PneumaticDrive& drive = *drives_[j];
       Json entry;
       entry["joints"] = mechanism_.active_names()[j];
@@ -323,12 +401,15 @@ class PneumaticSizing {
     return list;
   }
 
-  Description description_;
+  const Description& full_;
+  Description description_;  // without the joints of the hand, which are at home
   Mechanism mechanism_;
   std::vector<std::optional<PneumaticDrive>> drives_;
   const PneumaticSizeRequest& request_;
   Sheet sheet_;
+  std::vector<std::unique_ptr<Mechanism>> held_;  // with free joints elsewhere
   std::vector<Posture> postures_;
+  std::vector<std::string> names_;  // of the postures, unless they are a raster
   std::vector<JointDemand> demands_;
   std::vector<double> axis_;  // along and against each axis [N]
   double guaranteed_ = 0.0;

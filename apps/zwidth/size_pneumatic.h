@@ -1,15 +1,22 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "context.h"
+
+#include "zwidth/mechanism/sizes.h"
 
 namespace zwidth {
 
 /// What `zwidth size` was asked about a device whose joints cylinders move.
 struct PneumaticSizeRequest {
-  std::optional<Vector3> load;      ///< that the device exerts on the hand [N]; empty asks for what it can hold
-  std::optional<Vector3> position;  ///< of the tool [m]; empty looks at the whole workspace
+  std::vector<LoadDescription> loads;  ///< that the device exerts on the hand; none asks for what it can hold
+  std::optional<Vector3> position;     ///< of the tool [m]
+  /// Names, and values of all active joints. Without these and a position the whole workspace is looked at.
+  std::vector<std::pair<std::string, ActiveVector>> postures;
   bool json = false;
 };
 

@@ -55,6 +55,9 @@ struct Candidate {
   std::string rule;  ///< how it was found: "optimal", "minus root", ...
   ArmCylinderLayout layout = ArmCylinderLayout::one;
   std::optional<ArmCylinderDescription> design;
+  bool turns = false;  ///< the lever keeps away from zero in the whole range
+
+  const char* status() const { return !design ? "infeasible_design" : turns ? "ok" : "dead_point"; }
 };
 
 class Synthesis {
@@ -68,9 +71,10 @@ class Synthesis {
     head();
     std::vector<std::vector<std::string>> rows;
     Json designs = Json::array();
-    bool found = false;
+    bool found = false, dead = false;
     for (const Candidate& candidate : candidates_) {
-      found = found || candidate.design.has_value();
+      found = found || candidate.turns;
+      dead = dead || (candidate.design && !candidate.turns);
       designs.push_back(json_of(candidate));
       rows.push_back(row_of(candidate));
     }
@@ -78,13 +82,22 @@ class Synthesis {
     std::vector<std::string> columns = {"layout", "rule", "l0", "l1", "l2", "h mm", "lever mm", "peak force"};
     sheet_.heading("Linkages");
     sheet_.table(columns, rows, false);
-    mounts();
+    if (found) mounts();
+    if (!buildable()) {
+      sheet_.gap();
+      sheet_.paragraph("Not to be built like this: " + short_cylinder() + ".", 2, Tint::warning);
+    }
     if (arguments_.json) {
       print_json(document_);
     } else {
       print(sheet_.text());
     }
-    if (!found) {
+    if (!buildable() && arguments_.json) complain("warning: " + short_cylinder());
+    if (!found && dead) {
+      complain(fmt::format(
+          "dead_point: every linkage of this kind that has the travel loses its lever within the range; {}",
+          arguments_.lever.empty() && arguments_.height.empty() ? advice() : "give a shorter lever, or none"));
+    } else if (!found) {
       complain(fmt::format("infeasible_design: no linkage of this kind has the travel; {}", advice()));
     }
     return found ? kDone : kNo;
@@ -141,6 +154,13 @@ class Synthesis {
     }
   }
 
+  /// A cylinder with the rod in is longer than its stroke, for the rod must have room inside.
+  bool buildable() const { return travel_.min_length > travel_.stroke(); }
+  std::string short_cylinder() const {
+    return fmt::format("a cylinder of {} stroke is longer than that from pin to pin with the rod in, not {}",
+                       readable(travel_.stroke(), "m"), readable(travel_.min_length, "m"));
+  }
+
   bool wants(ArmCylinderLayout layout) const { return !layout_ || *layout_ == layout; }
 
   void search() {
@@ -148,7 +168,9 @@ class Synthesis {
     const bool free_lever = !arguments_.lever.empty(), free_pin = !arguments_.height.empty();
     const auto add = [this](std::string rule, ArmCylinderLayout layout,
                             std::optional<ArmCylinderDescription> design) {
-      candidates_.push_back({std::move(rule), layout, std::move(design)});
+      const Interval range{-travel_.half_range, travel_.half_range};
+      const bool turns = design && ArmCylinder(*design).keeps_direction(range);
+      candidates_.push_back({std::move(rule), layout, std::move(design), turns});
     };
     if (free_lever) {
       const double lever = positive_option("--lever", arguments_.lever, Dimension::length, 0.0);
@@ -186,6 +208,7 @@ class Synthesis {
     document_["stroke"] = travel_.stroke();
     document_["retracted_length"] = travel_.min_length;
     document_["half_range"] = travel_.half_range;
+    document_["buildable"] = buildable();
     sheet_.title("a cylinder that turns an arm", part_ != nullptr ? part_->info.title : std::string());
     sheet_.row("cylinder",
                fmt::format("{} … {}", readable(travel_.min_length, "m"), readable(travel_.max_length, "m")),
@@ -226,7 +249,7 @@ class Synthesis {
     Json entry;
     entry["layout"] = to_string(candidate.layout);
     entry["rule"] = candidate.rule;
-    entry["status"] = candidate.design ? "ok" : "infeasible_design";
+    entry["status"] = candidate.status();
     if (!candidate.design) return entry;
     const ArmCylinder arm(*candidate.design);
     const Interval range{-travel_.half_range, travel_.half_range};
@@ -236,7 +259,7 @@ class Synthesis {
     entry["h"] = candidate.design->h;
     entry["lever"] = {arm.lever(range.min), arm.lever(0.0), arm.lever(range.max)};
     entry["alpha"] = arm.form().alpha;
-    entry["keeps_direction"] = arm.keeps_direction(range);
+    entry["keeps_direction"] = candidate.turns;
     const auto peak = peak_of(arm);
     entry["peak_force"] = peak ? Json(peak->force) : Json(nullptr);
     entry["peak_angle"] = peak ? Json(peak->angle) : Json(nullptr);
@@ -257,8 +280,8 @@ class Synthesis {
     const ArmCylinder arm(*candidate.design);
     const auto mm = [](double metres) { return number(metres * kMilli, 6); };
     const auto peak = peak_of(arm);
-    std::string force = "a dead point in the range";
-    if (peak) {
+    std::string force = "✗ a dead point in the range";
+    if (candidate.turns && peak) {
       force = fmt::format("{} at {}°", given(load_) ? readable(peak->force, "N") : number(peak->force) + " /m",
                           number(peak->angle * kDegrees, 3));
       if (part_ != nullptr && given(load_) && given(pressure_))
@@ -280,10 +303,14 @@ class Synthesis {
   void mounts() {
     sheet_.heading("For a device file");
     for (const Candidate& candidate : candidates_) {
-      if (!candidate.design) continue;
+      if (!candidate.turns) continue;
+      // To the picometre, for `check` compares lengths to a part in 10^9.
       const auto length = [](double value) {
-        const std::string text = value == 0.0 ? "0" : format_quantity(value, Dimension::length);
-        return text.find(' ') == std::string::npos ? text : '"' + text + '"';
+        const std::string text = fmt::format("{:.9f}", value * kMilli);
+        const std::string digits = text.substr(0, text.find_last_not_of('0') + 1);
+        return value == 0.0 ? std::string("0")
+                            : fmt::format("\"{} mm\"",
+                                          digits.ends_with('.') ? digits.substr(0, digits.size() - 1) : digits);
       };
       std::string line = fmt::format("mount = {{ layout = \"{}\"", to_string(candidate.layout));
       if (candidate.layout != ArmCylinderLayout::one) line += ", l0 = " + length(candidate.design->l0);

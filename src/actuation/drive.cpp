@@ -337,26 +337,33 @@ std::vector<Margin> Drive::margins() const {
   return margins;
 }
 
-std::vector<DriveFigure> Drive::figures() const {
+std::vector<DriveFigure> Drive::figures(bool slides) const {
   std::vector<DriveFigure> figures;
   const auto put = [&](const char* key, const char* name, std::optional<double> value, const char* unit) {
     if (value && std::isfinite(*value)) {
       figures.push_back({key, name, *value, unit});
     }
   };
-  put("ratio", "ratio", ratio_, "");
+  const char* effort = slides ? "N" : "N m";
+  put("ratio", "ratio", ratio_, slides ? "rad/m" : "");
   if (efficiency_ < 1.0) put("efficiency", "efficiency", efficiency_, "");
-  put("continuous_torque", "continuous torque", continuous_torque().usable, "N m");
-  put("peak_torque", "peak torque", peak_torque().usable, "N m");
-  put("stall_torque", "stall torque", stall_torque().usable, "N m");
-  put("slip_torque", "torque at which the cable slips", continuous_torque().slip, "N m");
-  put("gearhead_torque", "torque that the gearhead may carry for ever", continuous_torque().gearhead, "N m");
-  put("backlash", "backlash at the joint", backlash(), "rad");
-  put("friction_torque", "friction of the motor", friction_torque(), "N m");
-  put("torque_resolution", "torque step", torque_resolution(), "N m");
-  put("angular_resolution", "angle step", angular_resolution(), "rad");
-  put("max_speed", "largest speed", speed().usable, "rad/s");
-  put("reflected_inertia", "reflected inertia", reflected_inertia(), "kg m^2");
+  put("continuous_torque", slides ? "continuous force" : "continuous torque", continuous_torque().usable,
+      effort);
+  put("peak_torque", slides ? "peak force" : "peak torque", peak_torque().usable, effort);
+  put("stall_torque", slides ? "stall force" : "stall torque", stall_torque().usable, effort);
+  put("slip_torque", slides ? "force at which the cable slips" : "torque at which the cable slips",
+      continuous_torque().slip, effort);
+  put("gearhead_torque",
+      slides ? "force that the gearhead may carry for ever" : "torque that the gearhead may carry for ever",
+      continuous_torque().gearhead, effort);
+  put("backlash", "backlash at the joint", backlash(), slides ? "m" : "rad");
+  put("friction_torque", "friction of the motor", friction_torque(), effort);
+  put("torque_resolution", slides ? "force step" : "torque step", torque_resolution(), effort);
+  put("angular_resolution", slides ? "step of the slide" : "angle step", angular_resolution(),
+      slides ? "m" : "rad");
+  put("max_speed", "largest speed", speed().usable, slides ? "m/s" : "rad/s");
+  put("reflected_inertia", slides ? "reflected mass" : "reflected inertia", reflected_inertia(),
+      slides ? "kg" : "kg m^2");
   put("perceived_mass", "perceived mass", perceived_mass(), "kg");
   put("equivalent_damping", "damping of the motor", equivalent_damping(description_.motor), "N m s/rad");
   put("mechanical_time_constant", "mechanical time constant", mechanical_time_constant(description_.motor),
@@ -365,7 +372,8 @@ std::vector<DriveFigure> Drive::figures() const {
       "s");
   put("current_loop_bandwidth", "current loop bandwidth (-3 dB)", current_loop_.bandwidth(), "Hz");
   put("current_loop_damping", "current loop damping ratio", current_loop_.damping_ratio(), "");
-  put("joint_stiffness", "stiffness felt at the joint, angle zero", joint_stiffness(0.0), "N m/rad");
+  put("joint_stiffness", slides ? "stiffness felt at the slide" : "stiffness felt at the joint, angle zero",
+      joint_stiffness(0.0), slides ? "N/m" : "N m/rad");
   if (capstan_) {
     const auto& capstan = std::get<CapstanDescription>(description_.transmission);
     put("preload", "cable preload", capstan.preload, "N");

@@ -128,8 +128,9 @@ class Drive {
   /// Every rule that the data allow to be checked, in a fixed order.
   std::vector<Margin> margins() const;
 
-  /// What is worth printing of the drive, in a fixed order.
-  std::vector<DriveFigure> figures() const;
+  /// What is worth printing of the drive, in a fixed order. Of a joint that slides torques are forces [N],
+  /// angles lengths [m] and the ratio is turns of the motor in rad per metre.
+  std::vector<DriveFigure> figures(bool slides = false) const;
 
   /// Motor current [A] for a joint torque [N m] that the drive pushes with, the motor's friction not
   /// compensated. Any input, no limit applied.

@@ -201,8 +201,8 @@ std::vector<Margin> PneumaticDrive::margins() const {
                "the cylinder must not be shorter than it is with the rod in");
     add_margin(margins, "greatest length", longest, mount.retracted_length + cylinder.stroke, "m",
                "the cylinder must not be longer than it is with the rod out");
-    add_margin(margins, "dead point", kDeadPointLever, least, "m",
-               "the lever must not vanish within the joint's range (|d'| < 1 nm/rad)");
+    add_margin(margins, "least lever", kDeadPointLever, least, "m",
+               "the lever must not vanish within the joint's range (a dead point: |d'| < 1 nm/rad)");
   } else {
     add_margin(margins, "stroke", joint_range_.width(), cylinder.stroke, "m",
                "the joint's range must not be more than the stroke");

@@ -24,7 +24,10 @@ Counterweight counterweight(double m, double d, double M, double D) {
 }
 
 bool serial_and_revolute(const Mechanism& mechanism) {
-  return mechanism.legs().size() == 1 && mechanism.legs()[0].attachment == Attachment::rigid &&
+  // Where the tool is but a point, the platform's bodies lie on the last link.
+  return mechanism.legs().size() == 1 &&
+         (mechanism.legs()[0].attachment == Attachment::rigid ||
+          mechanism.platform() == PlatformFreedom::point) &&
          std::all_of(mechanism.joints().begin(), mechanism.joints().end(),
                      [](const JointModel& joint) { return joint.type == JointType::revolute; });
 }
@@ -109,7 +112,7 @@ std::optional<BalancedBody> balanced_body(const Description& description, std::s
   if (!serial_and_revolute(mechanism) || mechanism.bodies().size() != description.bodies.size())
     return std::nullopt;
   const BodyModel& model = mechanism.bodies()[body];
-  if (model.joint < 0 || !(model.mass > 0.0)) return std::nullopt;
+  if (description.bodies[body].on == "platform" || !(model.mass > 0.0)) return std::nullopt;
   BalancedBody result{description.bodies[body], {}};
   std::vector<Vector3> moments = own_moments(mechanism);
   // What a point of the link can take: its own moment, and along its axis that of the inner link.

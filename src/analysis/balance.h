@@ -17,7 +17,7 @@ namespace zwidth {
 /// counted there, so that what is left weighs on a joint: the arm is balanced in every posture exactly if all
 /// b_j vanish, but for those of joints whose axes keep along gravity. (For the arm of Baser 2006, eq 5.24
 /// and 5.25: A along the upper link, B along the forearm.) Empty unless the mechanism is one leg of revolute
-/// joints with a rigid tool.
+/// joints whose last link is the tool, or carries it as a point.
 std::vector<Vector3> first_moments(const Mechanism& mechanism);
 
 /// Largest |gravity torque| of each active joint over postures, and how far the mass centre strays.

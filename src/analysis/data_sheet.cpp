@@ -145,7 +145,8 @@ DriveSheet drive_sheet(const DriveDescription& description, const Mechanism& mec
   DriveSheet sheet{.joints = std::move(joints), .drive = Drive(description, mechanism.active_range(first))};
   const Drive& drive = sheet.drive;
   sheet.margins = drive.margins();
-  sheet.figures = drive.figures();
+  sheet.figures = drive.figures(
+      mechanism.joints()[static_cast<std::size_t>(mechanism.active_joint(first))].type == JointType::prismatic);
   sheet.continuous = drive.continuous_torque();
   sheet.peak = drive.peak_torque();
   sheet.stall = drive.stall_torque();
@@ -338,7 +339,11 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
   sheet.active_joints = mechanism.active_count();
   sheet.tool_freedoms = mechanism.tool_rows();
   sheet.joint_names = mechanism.active_names();
-  for (int j = 0; j < mechanism.active_count(); ++j) sheet.joint_ranges.push_back(mechanism.active_range(j));
+  for (int j = 0; j < mechanism.active_count(); ++j) {
+    sheet.joint_ranges.push_back(mechanism.active_range(j));
+    sheet.joint_slides.push_back(mechanism.joints()[static_cast<std::size_t>(mechanism.active_joint(j))].type ==
+                                 JointType::prismatic);
+  }
   if (const auto* delta = std::get_if<DeltaDescription>(&description.mechanism)) {
     sheet.geometry = geometry_of(*delta);
   } else if (const auto* legs = std::get_if<LegsDescription>(&description.mechanism)) {

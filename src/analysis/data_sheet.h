@@ -148,7 +148,8 @@ struct DataSheet {
   int active_joints = 0;
   int tool_freedoms = 0;                 ///< 2, 3 or 6
   std::vector<std::string> joint_names;  ///< of the active joints
-  std::vector<Interval> joint_ranges;    ///< [rad]
+  std::vector<Interval> joint_ranges;    ///< [rad] or [m]
+  std::vector<bool> joint_slides;        ///< whether each of them is prismatic
   std::vector<GeometryEntry> geometry;
   double moving_mass = 0.0;  ///< of all bodies [kg]
 

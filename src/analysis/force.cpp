@@ -210,7 +210,8 @@ Ellipsoid force_ellipsoid(const Jacobian& jacobian, const ActiveVector& torque_l
       const Eigen::Index from = k - 1 - i;
       const double sigma = from < parts.sigma.size() ? parts.sigma[from] : 0.0;
       ellipsoid.axes.col(i) = carried * parts.u.col(from);
-      ellipsoid.lengths[i] = sigma > 0.0 ? 1.0 / sigma : kInfinity;
+      // What rounding leaves of a direction that loads no joint is no figure.
+      ellipsoid.lengths[i] = sigma > kZeroRow * parts.sigma[0] ? 1.0 / sigma : kInfinity;
     }
   } else if (k > 0) {
     ellipsoid.axes.leftCols(k) = carried;

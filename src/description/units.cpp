@@ -48,7 +48,7 @@ constexpr DimensionEntry kDimensions[] = {
     {Dimension::force, "a force", "N", false, "N", {"N", "mN", "kN"}},
     {Dimension::torque, "a torque", "N m", false, "N m or mN m", {"N m", "mN m"}},
     {Dimension::power, "a power", "W", false, "W or mW", {"W", "mW"}},
-    {Dimension::pressure, "a pressure", "Pa", false, "Pa, MPa or GPa", {"GPa", "MPa", "Pa"}},
+    {Dimension::pressure, "a pressure", "Pa", false, "Pa, kPa, MPa or GPa", {"GPa", "MPa", "kPa"}},
     {Dimension::stiffness, "a stiffness", "N/m", false, "N/m or N/mm", {"N/m", "N/mm", "N/um"}},
     {Dimension::damping, "a damping", "N s/m", false, "N s/m", {"N s/m"}},
     {Dimension::angular_stiffness, "an angular stiffness", "N m/rad", false, "N m/rad", {"N m/rad"}},
@@ -314,9 +314,11 @@ std::string format_quantity(double value, Dimension dimension) {
       std::from_chars(number.data(), number.data() + number.size(), back);
       if (scale->to_si(back) != value) continue;
       const std::string plain = fmt::format("{}", back);  // 80, where %g with one digit says 8e+01
-      if (best.empty() || plain.size() + later < shortest) {
+      constexpr std::size_t kPower = 9;  // a power of ten reads as badly as so many digits more
+      const std::size_t length = plain.size() + later + (plain.find('e') == std::string::npos ? 0 : kPower);
+      if (best.empty() || length < shortest) {
         best = plain + ' ' + std::string(customary);
-        shortest = plain.size() + later;
+        shortest = length;
       }
       break;
     }

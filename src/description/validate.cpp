@@ -579,6 +579,7 @@ class Validator {
     constexpr double kRounding = 1e-9;
     for (std::size_t i = 0; i < names.size(); ++i) {
       // A range that an angle in degrees meets exactly may miss it by rounding.
+      if (!(ranges[i].min < ranges[i].max)) continue;  // said at the range itself
       if (ranges[i].contains(posture.joints[i], kRounding)) continue;
       check_number(posture.joints[i], dimensions[i], {.min = ranges[i].min, .max = ranges[i].max},
                    join_path(path + ".joints", i), "stay within the range of " + names[i], problems_);

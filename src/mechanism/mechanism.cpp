@@ -61,6 +61,7 @@ Mechanism::Mechanism(const Description& description) : name_(description.name), 
       if (joint.active) {
         one.active = active_count();
         one.free = joint.free;
+        driven_count_ += joint.free ? 0 : 1;
         active_joints_.push_back(joint_count());
         active_names_.push_back(uses[joint.name] == 1 ? joint.name : joint_names_.back());
       }
@@ -135,6 +136,16 @@ std::span<const int> Mechanism::tool_axes() const {
       break;
   }
   return all;
+}
+
+ActiveVector Mechanism::with_free_at_home(const ActiveVector& driven) const {
+  assert(driven.size() == driven_count_);
+  ActiveVector joints(active_count());
+  Eigen::Index next = 0;
+  for (int i = 0; i < active_count(); ++i) {
+    joints[i] = is_free(i) ? home_guess_[active_joint(i)] : driven[next++];
+  }
+  return joints;
 }
 
 int Mechanism::linear_rows() const {

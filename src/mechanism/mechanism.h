@@ -96,6 +96,11 @@ class Mechanism {
   Interval active_range(int i) const { return joints_[active_joints_[i]].range; }
   /// Whether the hand alone moves active joint `i`: no drive does, so its torque is always zero.
   bool is_free(int i) const { return joints_[active_joints_[i]].free; }
+  /// How many of the active joints drives move: all that are not free.
+  int driven_count() const { return driven_count_; }
+  /// Values of all active joints from those of the driven ones in their order; free ones are at home.
+  /// REQUIRES: driven.size() == driven_count().
+  ActiveVector with_free_at_home(const ActiveVector& driven) const;
   /// All joints in a posture that closes the loops, from the description: where the general solver starts.
   const JointVector& home_guess() const { return home_guess_; }
   const Vector3& gravity() const { return gravity_; }  ///< [m/s^2], base frame
@@ -123,6 +128,7 @@ class Mechanism {
   std::vector<std::string> joint_names_;
   std::vector<std::string> active_names_;
   std::vector<int> active_joints_;
+  int driven_count_ = 0;
   JointVector home_guess_;
   Vector3 gravity_;
   ActiveVector drive_inertia_;

@@ -1,8 +1,15 @@
 #include "zwidth/mechanism/mechanism_problems.h"
 
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <optional>
 
+#include "zwidth/description/names.h"
+#include "zwidth/math/svd.h"
 #include "zwidth/mechanism/internal/posture_builder.h"
+#include "zwidth/mechanism/jacobian.h"
 #include "zwidth/mechanism/mobility.h"
 
 namespace zwidth {
@@ -124,10 +131,97 @@ std::vector<Problem> freedom_problems(const Mechanism& mechanism, const Mobility
   return problems;
 }
 
+std::string platform_name(PlatformFreedom platform) {
+  for (const auto& [name, freedom] : platform_freedom_names()) {
+    if (freedom == platform) return name;
+  }
+  return "";
+}
+
+// Where lines come nearest to meeting, and how far the farthest passes by.
+std::pair<Vector3, double> meeting(const Posture& posture, int first, int last) {
+  Matrix3 A = Matrix3::Zero();
+  Vector3 b = Vector3::Zero();
+  for (int j = first; j <= last; ++j) {
+    const Vector3& axis = posture.joint_axis(j);
+    const Matrix3 across = Matrix3::Identity() - axis * axis.transpose();
+    A += across;
+    b += across * posture.joint_point(j);
+  }
+  const Vector3 point = A.ldlt().solve(b);
+  double farthest = 0.0;
+  for (int j = first; j <= last; ++j)
+    farthest = std::max(farthest, (point - posture.joint_point(j)).cross(posture.joint_axis(j)).norm());
+  return {point, farthest};
+}
+
+// Of an arm with joints enough for all that its platform may do: whether they do it anywhere. Where they do
+// not, a link without length, if there is one, is what makes more than three joints turn about one point.
+std::vector<Problem> arm_problems(const Mechanism& mechanism, const MechanismDescription& description) {
+  const int n = mechanism.active_count(), rows = mechanism.tool_rows();
+  if (mechanism.legs().size() != 1 || mechanism.joint_count() != n || n < rows) return {};
+  constexpr int kPostures = 12;
+  const double length = mechanism.characteristic_length();
+  int best = 0;
+  std::optional<Posture> anywhere;
+  for (int k = 0; k < kPostures; ++k) {
+    ActiveVector q(n);
+    for (int j = 0; j < n; ++j) {
+      const Interval range = mechanism.active_range(j);
+      const double home = mechanism.home_guess()[mechanism.active_joint(j)];
+      const double low = std::max(range.min, home - 3.0), high = std::min(range.max, home + 3.0);
+      q[j] = low + (high - low) * std::fmod(0.37 + k * std::sqrt(2.0 + 3.0 * j), 1.0);  // all different
+    }
+    const Solution solution = solve_forward(mechanism, q);
+    if (!solution) continue;
+    Jacobian J = jacobian(*solution.posture);
+    J.topRows(mechanism.linear_rows()) /= length;
+    for (int j = 0; j < n; ++j) {
+      if (mechanism.joints()[static_cast<std::size_t>(j)].type == JointType::prismatic) J.col(j) *= length;
+    }
+    const auto sigma = svd(J).sigma;
+    int rank = 0;
+    while (rank < sigma.size() && sigma[rank] > 1e-9 * std::max(1.0, sigma[0])) ++rank;
+    if (rank < best) continue;
+    best = rank;
+    anywhere = solution.posture;
+  }
+  if (best >= rows || !anywhere) return {};
+  const std::string ways = fmt::format("the joints move the tool in {} only, where platform = \"{}\" has {}",
+                                       counted(best, "way", "ways"), platform_name(mechanism.platform()), rows);
+  for (int first = 0; first + 3 < n; ++first) {
+    int last = first;
+    while (last + 1 < n && mechanism.joints()[static_cast<std::size_t>(last + 1)].type == JointType::revolute &&
+           meeting(*anywhere, first, last + 1).second < 1e-9 * length)
+      ++last;
+    if (mechanism.joints()[static_cast<std::size_t>(first)].type != JointType::revolute || last < first + 3)
+      continue;
+    std::vector<int> joints;
+    for (int j = first; j <= last; ++j) joints.push_back(j);
+    // The row that lays off the link: of a serial arm there are fixed ones in between.
+    std::string key = key_of(mechanism, first + 2);
+    if (const auto* arm = std::get_if<SerialDescription>(&description)) {
+      int row = -1;
+      for (int moving = -1; moving < first + 2;)
+        moving += arm->joints[static_cast<std::size_t>(++row)].type != SerialJointType::fixed ? 1 : 0;
+      key = fmt::format("joint[{}]", row);
+    }
+    return {{.key = key,
+             .rule = fmt::format("a link has no length: {} all turn about one point, so that {}",
+                                 listed(mechanism, joints), ways),
+             .advice = "give the rows between them a length, a or d, or leave a joint out"}};
+  }
+  return {{.key = "mechanism.platform",
+           .rule = ways,
+           .advice = "turn an axis (theta or alpha), give a link a length, or choose another platform"}};
+}
+
 }  // namespace
 
 std::vector<Problem> mechanism_problems(const Description& description) {
   const auto* legs = std::get_if<LegsDescription>(&description.mechanism);
+  if (std::holds_alternative<SerialDescription>(description.mechanism))
+    return arm_problems(Mechanism(description), description.mechanism);
   if (legs == nullptr) return {};  // the families see to it themselves
   const Mechanism mechanism(description);
   const Assembly assembly = find_assembly(mechanism);
@@ -137,6 +231,7 @@ std::vector<Problem> mechanism_problems(const Description& description) {
   if (!sample.posture.empty()) problems = freedom_problems(mechanism, sample);
   if (problems.empty() && !assembly.from_home)
     problems.push_back(home_problem(mechanism, assembly.posture.front()));
+  if (problems.empty()) problems = arm_problems(mechanism, description.mechanism);
   return problems;
 }
 

@@ -5,9 +5,10 @@
 #include <numbers>
 
 #include "zwidth/mechanism/families.h"
-#include "zwidth/mechanism/internal/posture_builder.h"
+#include "zwidth/mechanism/internal/joint_values.h"
 #include "zwidth/mechanism/posture.h"
 #include "zwidth/mechanism/serial_chain.h"
+#include "zwidth/mechanism/wrist.h"
 
 namespace zwidth {
 namespace {
@@ -128,67 +129,120 @@ namespace {
 
 class PositioningClosedForm final : public ClosedForm {
  public:
-  PositioningClosedForm(const PositioningArm& arm, const LegDescription& leg, const SerialChain& chain)
-      : arm_(arm), leg_(leg), chain_(chain) {
+  /// `wrist` is empty of a tool that is a point, whose turning is not asked for.
+  PositioningClosedForm(const PositioningArm& arm, const std::optional<Wrist>& wrist, const LegDescription& leg,
+                        const SerialChain& chain)
+      : arm_(arm), wrist_(wrist), leg_(leg), chain_(chain) {
     home_.resize(static_cast<Eigen::Index>(leg.joints.size()));
     for (Eigen::Index j = 0; j < home_.size(); ++j) home_[j] = leg.joints[static_cast<std::size_t>(j)].home;
+    if (wrist_) hand_ = leg.platform_rotation.transpose() * (leg.tip - wrist_->centre());
   }
 
   ClosedPosture forward(const ActiveVector& active) const noexcept override {
     return {.status = SolveStatus::reached, .joints = active, .tool = chain_.pose(active)};
   }
 
-  int branch_count() const noexcept override { return arm_.branch_count(); }
+  int branch_count() const noexcept override {
+    return arm_.branch_count() * (wrist_ ? wrist_->branch_count() : 1);
+  }
 
-  // Solutions within the joint ranges come first, then those near the start, or else near home. The wrist
-  // stays.
+  // Of a rigid tool a position alone leaves joints open.
+  bool covers(const SolveOptions& options) const noexcept override {
+    return !wrist_ || options.match == Match::pose;
+  }
+
+  // Solutions within the joint ranges come first, then those near the start, or else near home. Joints that do
+  // not matter stay.
   ClosedPosture inverse(const Pose& tool, const SolveOptions& options, int branch) const noexcept override {
-    const PositioningSolutions solutions = arm_.inverse(tool.position);
+    const Vector3 centre = wrist_ ? Vector3(tool.position - tool.rotation * hand_) : tool.position;
+    const PositioningSolutions solutions = arm_.inverse(centre);
     if (solutions.status != SolveStatus::reached) return {.status = solutions.status, .joint = 0};
-    if (branch >= solutions.count) return {.status = SolveStatus::unreachable, .joint = 0};
     const JointVector start = options.start != nullptr ? options.start->joints() : home_;
-    std::array<double, 4> cost{};
-    std::array<int, 4> order{0, 1, 2, 3};
-    for (int n = 0; n < solutions.count; ++n) cost[n] = cost_of(solutions.joints[n], start);
-    // Four at most, so that the equal ones keep their order.
-    for (int i = 1; i < solutions.count; ++i) {
-      for (int k = i; k > 0 && cost[order[k]] < cost[order[k - 1]]; --k) std::swap(order[k], order[k - 1]);
+    Found found;
+    for (int n = 0; n < solutions.count; ++n) {
+      JointVector joints = start;
+      for (int j = 0; j < 3; ++j) joints[j] = solutions.joints[n][j];
+      if (!wrist_) {
+        add(joints, start, found);
+        continue;
+      }
+      Wrist::Angles near{};
+      for (int w = 0; w < wrist_->joint_count(); ++w) near[w] = start[3 + w];
+      const Matrix3 turn = turn_of(joints).transpose() * tool.rotation * leg_.platform_rotation.transpose();
+      const Wrist::Solutions wrist = wrist_->inverse(turn, near);
+      for (int k = 0; k < wrist.count; ++k) {
+        for (int w = 0; w < wrist_->joint_count(); ++w) joints[3 + w] = wrist.angles[k][w];
+        add(joints, start, found);
+      }
     }
-    JointVector joints = start;
-    for (int j = 0; j < 3; ++j) joints[j] = solutions.joints[order[branch]][j];
-    return forward(ActiveVector(joints));
+    if (branch >= found.count) return {.status = SolveStatus::unreachable, .joint = found.count > 0 ? 0 : 3};
+    return forward(ActiveVector(found.joints[branch]));
   }
 
  private:
-  double cost_of(const std::array<double, 3>& joints, const JointVector& start) const noexcept {
-    constexpr double kOutOfRange = 1e3;  // more than any way from the start
-    constexpr double kLimitTolerance = 1e-9;
-    double cost = 0.0;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const JointDescription& joint = leg_.joints[j];
-      const bool slides = joint.type == JointType::prismatic;
-      double q = joints[j];
-      if (!slides) q = internal::wrapped({.type = joint.type, .range = joint.range}, q);
-      if (!joint.range.contains(q, kLimitTolerance)) cost += kOutOfRange;
-      const double way = q - start[static_cast<Eigen::Index>(j)];
-      cost += std::abs(slides ? way : std::remainder(way, 2.0 * std::numbers::pi));
+  static constexpr int kMost = 8;
+  // The cheapest first.
+  struct Found {
+    int count = 0;
+    std::array<JointVector, kMost> joints;
+    std::array<double, kMost> cost{};
+  };
+
+  // Of the link that carries the wrist, against the zero posture.
+  Matrix3 turn_of(const JointVector& joints) const noexcept {
+    Matrix3 turn = Matrix3::Identity();
+    for (int j = 0; j < 3; ++j) {
+      const JointDescription& joint = leg_.joints[static_cast<std::size_t>(j)];
+      if (joint.type == JointType::revolute)
+        turn = turn * Eigen::AngleAxisd(joints[j], joint.axis.normalized()).toRotationMatrix();
     }
-    return cost;
+    return turn;
+  }
+
+  // Settles the angles in their ranges, and puts them where they belong among the others.
+  void add(JointVector joints, const JointVector& start, Found& found) const noexcept {
+    constexpr double kOutOfRange = 1e3;  // more than any way from the start
+    double cost = 0.0;
+    for (std::size_t j = 0; j < leg_.joints.size(); ++j) {
+      const auto i = static_cast<Eigen::Index>(j);
+      const JointDescription& joint = leg_.joints[j];
+      if (joint.type == JointType::revolute) joints[i] = internal::settled(joints[i], joint.range, start[i]);
+      if (!joint.range.contains(joints[i], internal::kLimitTolerance)) cost += kOutOfRange;
+      cost += std::abs(joints[i] - start[i]);
+    }
+    int at = found.count++;
+    for (; at > 0 && cost < found.cost[at - 1]; --at) {  // equal ones keep their order
+      found.cost[at] = found.cost[at - 1];
+      found.joints[at] = found.joints[at - 1];
+    }
+    found.cost[at] = cost;
+    found.joints[at] = joints;
   }
 
   PositioningArm arm_;
+  std::optional<Wrist> wrist_;
   LegDescription leg_;
   SerialChain chain_;
   JointVector home_;
+  Vector3 hand_ = Vector3::Zero();  // from the wrist's centre to the tool point, in the tool's frame
 };
 
 }  // namespace
 
 std::shared_ptr<const ClosedForm> positioning_closed_form(const SerialDescription& arm) {
-  if (arm.platform != PlatformFreedom::point) return nullptr;
   const LegDescription leg = legs_of(arm).legs.front();
-  const std::optional<PositioningArm> positioning = PositioningArm::of(leg);
-  return positioning ? std::make_shared<PositioningClosedForm>(*positioning, leg, SerialChain(arm)) : nullptr;
+  LegDescription to_centre = leg;
+  std::optional<Wrist> wrist;
+  if (arm.platform == PlatformFreedom::rigid) {
+    wrist = Wrist::of(leg, 3);
+    if (!wrist) return nullptr;
+    to_centre.tip = wrist->centre();
+  } else if (arm.platform != PlatformFreedom::point) {
+    return nullptr;
+  }
+  const std::optional<PositioningArm> positioning = PositioningArm::of(to_centre);
+  return positioning ? std::make_shared<PositioningClosedForm>(*positioning, wrist, leg, SerialChain(arm))
+                     : nullptr;
 }
 
 }  // namespace zwidth

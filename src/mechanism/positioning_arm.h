@@ -10,7 +10,7 @@
 /// Three joints that bring a point anywhere in space, in closed form: two revolute joints with parallel axes,
 /// and either a prismatic joint along them or, after them, a revolute one at right angles. The positioning
 /// stages of the pneumatic prototypes are of this kind (Akhoondi Asadi 2017, section 3.2). A wrist may follow
-/// whose axes meet in the tool point; its angles do not matter to it.
+/// (wrist.h): of a tool that is a point it is left to the hand, else it turns the tool as it should be.
 
 namespace zwidth {
 
@@ -24,7 +24,8 @@ struct PositioningSolutions {
 
 class PositioningArm {
  public:
-  /// Empty unless the leg is of this kind. Axes count as parallel, at right angles or meeting to 1e-9.
+  /// Empty unless the leg is of this kind. Axes count as parallel, at right angles or meeting to 1e-9. Its
+  /// first three joints position the tip; the axes of any others must meet in it.
   static std::optional<PositioningArm> of(const LegDescription& leg);
 
   /// Largest number of solutions: 2 with a prismatic joint, else 4.
@@ -50,7 +51,8 @@ class PositioningArm {
   Vector3 m_;                     // axis of the third revolute joint
 };
 
-/// The closed form of a serial arm of this kind; null if it is none, or if its tool is more than a point.
+/// The closed form of a serial arm of this kind, whose tool is a point or rigid; null if it is none. Of a rigid
+/// tool the wrist has up to three joints, and may meet elsewhere than in the tool point.
 std::shared_ptr<const ClosedForm> positioning_closed_form(const SerialDescription& arm);
 
 }  // namespace zwidth

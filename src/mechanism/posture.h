@@ -75,6 +75,9 @@ struct SolveOptions {
   Redundancy redundancy = {};  ///< which of its postures an arm with joints to spare takes
 };
 
+/// Reciprocal conditions of the closure below this make a posture degraded.
+inline constexpr double kNearSingularity = 1e-4;
+
 /// What solving came to.
 struct Solution {
   SolveStatus status = SolveStatus::unreachable;
@@ -88,6 +91,8 @@ struct Solution {
   std::optional<Posture> posture;  ///< present unless unreachable or degenerate
 
   explicit operator bool() const { return posture.has_value(); }
+  /// Near a singularity, as the status degraded says, also where the status is joint_limit.
+  bool near_singularity() const { return posture.has_value() && conditioning < kNearSingularity; }
 };
 
 /// The posture of given active joint values [rad] or [m].

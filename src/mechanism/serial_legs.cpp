@@ -1,5 +1,7 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "zwidth/mechanism/families.h"
 
@@ -7,6 +9,20 @@
 // zero, and such a leg as Denavit-Hartenberg rows.
 
 namespace zwidth {
+
+namespace {
+
+// A turn about an axis of the frame, exact where it is a whole number of quarters: 90 deg leave no dust on the
+// axes.
+Matrix3 turn_about(double angle, const Vector3& axis) {
+  constexpr double kQuarter = 0.5 * std::numbers::pi, kSame = 1e-15;
+  const double quarters = std::round(angle / kQuarter);
+  if (std::abs(angle - quarters * kQuarter) > kSame * std::max(1.0, std::abs(angle)))
+    return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+  return Eigen::AngleAxisd(angle, axis).toRotationMatrix().array().round().matrix();
+}
+
+}  // namespace
 
 LegsDescription legs_of(const SerialDescription& arm) {
   LegDescription leg;
@@ -28,8 +44,9 @@ LegsDescription legs_of(const SerialDescription& arm) {
            .range = row.range,
            .home = row.home});
     }
-    T = T * Eigen::AngleAxisd(row.theta, Vector3::UnitZ()) * Eigen::Translation3d(row.a, 0.0, row.d) *
-        Eigen::AngleAxisd(row.alpha, Vector3::UnitX());
+    T.rotate(turn_about(row.theta, Vector3::UnitZ()));
+    T.translate(Vector3(row.a, 0.0, row.d));
+    T.rotate(turn_about(row.alpha, Vector3::UnitX()));
   }
   leg.tip = T.translation();
   if (!by_point) leg.platform_rotation = T.linear();

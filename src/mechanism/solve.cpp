@@ -25,7 +25,6 @@ using internal::PostureBuilder;
 
 namespace {
 
-constexpr double kSingular = 1e-4;      // reciprocal conditions below this make a posture degraded
 constexpr double kLongestStep = 0.4;    // of what leads the way: active joints [rad, characteristic lengths]
 constexpr double kShortestStep = 1e-3;  // share of the way; a shorter step that fails ends the search
 constexpr double kLargestCorrection = 1.5;  // of a joint within one step; more is a jump to another branch
@@ -205,6 +204,46 @@ Newton lead_active(Posture& posture, const ActiveVector& target, double toleranc
   return newton;
 }
 
+// Leads `posture`, closed at its active joints, to other ones by a way that goes round the other side with some
+// of them: all by the shorter way, or one of them the other way than straight. Only joints whose range is a
+// whole turn may. On failure `posture` is left where it failed.
+Newton lead_round(Posture& posture, const ActiveVector& target, double tolerance, int limit, Budget& budget,
+                  Closure& closure) {
+  const Mechanism& mechanism = posture.mechanism();
+  const Posture from = posture;
+  const ActiveVector here = from.active();
+  Newton newton;
+  const auto lead = [&](const ActiveVector& turned) {
+    posture = from;
+    budget.left = limit;
+    newton = lead_active(posture, turned, tolerance, budget, closure);
+    if (!newton.converged) return false;
+    // The same angles, as they are called.
+    for (int i = 0; i < mechanism.active_count(); ++i)
+      PostureBuilder::joints(posture)[mechanism.active_joint(i)] = target[i];
+    newton = close_loops(posture, tolerance * mechanism.characteristic_length(), 10, budget, closure);
+    return newton.converged;
+  };
+  const auto goes_round = [&](int i) {
+    const JointModel& joint = mechanism.joints()[mechanism.active_joint(i)];
+    return joint.type == JointType::revolute && internal::goes_round(joint.range);
+  };
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  ActiveVector shorter = target;
+  for (int i = 0; i < mechanism.active_count(); ++i) {
+    if (goes_round(i)) shorter[i] = here[i] + std::remainder(target[i] - here[i], kTurn);
+  }
+  if ((shorter - target).cwiseAbs().maxCoeff() > 1.0 && lead(shorter)) return newton;
+  for (int i = 0; i < mechanism.active_count(); ++i) {
+    if (!goes_round(i)) continue;
+    ActiveVector other = shorter;
+    other[i] += shorter[i] > here[i] ? -kTurn : kTurn;
+    if (lead(other)) return newton;
+  }
+  newton.converged = false;
+  return newton;
+}
+
 // Wraps the passive angles, then says what the posture is worth, given its closure.
 void judge(Solution& solution, const Closure& closure) {
   Posture& posture = *solution.posture;
@@ -215,7 +254,7 @@ void judge(Solution& solution, const Closure& closure) {
   }
   solution.conditioning =
       std::min({closure.reciprocal_condition(), closure.drive_condition(posture), closure.passive_condition()});
-  solution.status = solution.conditioning < kSingular ? SolveStatus::degraded : SolveStatus::reached;
+  solution.status = solution.near_singularity() ? SolveStatus::degraded : SolveStatus::reached;
   for (int j = 0; j < mechanism.joint_count(); ++j) {
     const JointModel& joint = mechanism.joints()[j];
     if (joint.active < 0) joints[j] = internal::wrapped(joint, joints[j]);
@@ -240,7 +279,20 @@ Solution forward_general(const Mechanism& mechanism, const ActiveVector& active,
     solution.posture = at_home_guess(mechanism);
     budget.left = std::max(budget.left, options.max_iterations / 2);
     newton = close_loops(*solution.posture, kLoose * length, 40, budget, closure);
-    if (newton.converged) newton = lead_active(*solution.posture, active, options.tolerance, budget, closure);
+    if (newton.converged) {
+      const Posture home = *solution.posture;
+      newton = lead_active(*solution.posture, active, options.tolerance, budget, closure);
+      if (!newton.converged && options.restart) {
+        const Newton straight = newton;
+        Posture round = home;
+        newton = lead_round(round, active, options.tolerance, options.max_iterations, budget, closure);
+        if (newton.converged) {
+          solution.posture = round;
+        } else {
+          newton.residual = straight.residual;
+        }
+      }
+    }
   }
   solution.iterations = budget.used;
   solution.residual = newton.residual;
@@ -409,6 +461,39 @@ std::vector<JointVector> leg_roots(const Posture& posture, int l, double toleran
   return roots;
 }
 
+// Whether the mechanism, driven to the posture's active joints, stands elsewhere. Where it cannot be driven
+// there nothing is known against the posture.
+bool stands_elsewhere(const Posture& posture, const SolveOptions& options) {
+  constexpr double kSame =
+      1e-6;  // of the characteristic length, or rad: a root that cancels loses half the digits
+  const Mechanism& mechanism = posture.mechanism();
+  if (mechanism.serial() != nullptr) return false;  // an arm has one posture for its joints
+  const Solution driven = solve_forward(mechanism, posture.active(), {.closed_form = options.closed_form});
+  if (!driven) return false;
+  const Pose &here = posture.tool(), &there = driven.posture->tool();
+  return (there.position - here.position).norm() > kSame * mechanism.characteristic_length() ||
+         internal::rotation_between(here.rotation, there.rotation).norm() > kSame;
+}
+
+// Another posture of an arm with its tool in the same place and every joint in its range, the nearest that is
+// found.
+void seek_within_ranges(Solution& solution, const SolveOptions& options) {
+  const Mechanism& mechanism = solution.posture->mechanism();
+  for (const JointVector& root : leg_roots(*solution.posture, 0, options.tolerance)) {
+    Solution other = solution;
+    other.joint = -1;
+    PostureBuilder::joints(*other.posture) = root;
+    PostureBuilder::place_leg(*other.posture, 0);
+    Budget budget{10};
+    other.residual =
+        reach(*other.posture, 0, options.tolerance * mechanism.characteristic_length(), 5, budget).residual;
+    judge(other, Closure(*other.posture));
+    if (other.status == SolveStatus::joint_limit) continue;
+    solution = std::move(other);
+    return;
+  }
+}
+
 Solution inverse_general(const Mechanism& mechanism, const Pose& tool, const SolveOptions& options) {
   const int legs = static_cast<int>(mechanism.legs().size());
   const double length = mechanism.characteristic_length();
@@ -451,11 +536,18 @@ Solution inverse_general(const Mechanism& mechanism, const Pose& tool, const Sol
   }
   PostureBuilder::tool(posture) = tool;
   for (int i = 0; i < mechanism.active_count(); ++i) {
-    double& q = PostureBuilder::joints(posture)[mechanism.active_joint(i)];
-    q = internal::wrapped(mechanism.joints()[mechanism.active_joint(i)], q);
+    const int j = mechanism.active_joint(i);
+    const JointModel& joint = mechanism.joints()[j];
+    const double near = options.start != nullptr ? options.start->joints()[j] : mechanism.home_guess()[j];
+    double& q = PostureBuilder::joints(posture)[j];
+    if (joint.type != JointType::prismatic) q = internal::settled(q, joint.range, near);
   }
   closure.factor(posture);
   judge(solution, closure);
+  if (solution.status == SolveStatus::joint_limit && mechanism.serial() != nullptr && options.restart &&
+      options.start == nullptr) {
+    seek_within_ranges(solution, options);
+  }
   return solution;
 }
 
@@ -495,20 +587,6 @@ Solution closed_inverse(const Mechanism& mechanism, const Pose& tool, const Solv
     }
   }
   return closed_solution(mechanism, closed);
-}
-
-// Whether the mechanism, driven to the posture's active joints, stands elsewhere. Where it cannot be driven
-// there nothing is known against the posture.
-bool stands_elsewhere(const Posture& posture, const SolveOptions& options) {
-  constexpr double kSame =
-      1e-6;  // of the characteristic length, or rad: a root that cancels loses half the digits
-  const Mechanism& mechanism = posture.mechanism();
-  if (mechanism.serial() != nullptr) return false;  // an arm has one posture for its joints
-  const Solution driven = solve_forward(mechanism, posture.active(), {.closed_form = options.closed_form});
-  if (!driven) return false;
-  const Pose &here = posture.tool(), &there = driven.posture->tool();
-  return (there.position - here.position).norm() > kSame * mechanism.characteristic_length() ||
-         internal::rotation_between(here.rotation, there.rotation).norm() > kSame;
 }
 
 // Of the mechanism's own assembly mode, or none. A posture beyond a joint's range is no answer in any mode, and

@@ -131,7 +131,7 @@ TEST(PneumaticDrive, GivesNoForceAtADeadPoint) {
   EXPECT_EQ(command.force, 0.0);
   EXPECT_EQ(command.torque, 0.0);
   EXPECT_EQ(drive.torque_range(dead), (Interval{0.0, 0.0}));
-  EXPECT_FALSE(margin(drive.margins(), "dead point").ok);
+  EXPECT_FALSE(margin(drive.margins(), "least lever").ok);
   EXPECT_EQ(drive.command(1.0, std::nan("")).status, PneumaticStatus::dead_point);
 }
 

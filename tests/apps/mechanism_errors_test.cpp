@@ -197,5 +197,55 @@ TEST(MechanismErrors, ALoadInTheFileOfTheWrongDimension) {
                  "force = [0, \"5 N\"]", {"load[0].force"});
 }
 
+void expect_words(const std::vector<std::string>& arguments, const std::vector<std::string>& words) {
+  const Outcome outcome = run(arguments);
+  EXPECT_EQ(outcome.status, 2) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  for (const std::string& word : words)
+    EXPECT_NE(outcome.err.find(word), std::string::npos) << "lacks '" << word << "': " << outcome.err;
+}
+
+TEST(MechanismErrors, ALinkOfAnArmThatHasNoLength) {
+  expect_words(
+      {"at", "seven-dof", "--joints", "0,90deg,0,90deg,0,0,0", "--set", "joint[2].d=0"},
+      {"joint[2]", "a link has no length", "arm/theta1", "5 ways", "platform = \"rigid\" has 6", "a or d"});
+  expect_words({"at", "seven-dof", "--joints", "0,90deg,0,90deg,0,0,0", "--set", "joint[4].d=0"},
+               {"joint[", "a link has no length", "arm/theta6"});
+  expect_words({"at", "seven-dof-locked", "--joints", "0,90deg,90deg,0,0,0", "--set", "joint[2].d=0"},
+               {"joint[", "a link has no length"});
+  // Without fewer ways than joints or freedoms four axes may meet.
+  EXPECT_EQ(run({"at", "pneumatic-1", "--joints", "0.05,0,0", "--set", "mechanism.platform=rigid"}).status, 0);
+}
+
+TEST(MechanismErrors, SlidesThatAreParallel) {
+  const ScratchDirectory scratch;
+  std::string text =
+      "[device]\nname = \"slides\"\ntitle = \"x\"\n[mechanism]\ntype = \"serial\"\nplatform = "
+      "\"translation\"\n";
+  for (const char* name : {"a", "b", "c"})
+    text += std::string("[[joint]]\nname = \"") + name +
+            "\"\ntype = \"prismatic\"\nalpha = \"90 deg\"\nrange = " + "[\"-100 mm\", \"100 mm\"]\n";
+  expect_words({"at", scratch.file("slides.toml", text), "--joints", "0,0,0"},
+               {"mechanism.platform", "2 ways only", "turn an axis"});
+}
+
+TEST(MechanismErrors, ARangeTheWrongWayRoundIsSaidOnce) {
+  const Outcome outcome = run({"check", "seven-dof", "--set", "joint[0].range=[\"90 deg\", \"-90 deg\"]"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("1 problem\n"), std::string::npos) << outcome.err;
+}
+
+TEST(MechanismErrors, ALoadSaysWhatItIsMadeOf) {
+  expect_words({"at", "delta", "--joints", "0,0,0", "--load", "1,2,3,4,5,6"},
+               {"has 6 entries", "give 3, a force along x, y, z", "no moment"});
+  expect_words({"at", "seven-dof", "--joints", "0,90deg,0,90deg,0,0,0", "--load", "1,2,3,4"},
+               {"give 3, a force along x, y, z, or 6 with a moment about rx, ry, rz"});
+  expect_words({"at", "five-bar", "--joints", "120deg,60deg", "--load", "1,2,3"},
+               {"give 2, a force along x, y"});
+  expect_words({"size", "five-bar", "--load", "1"}, {"two (a force along x, y)"});
+  EXPECT_EQ(run({"size", "five-bar", "--load", "1,2", "--json"}).json()["drives"],
+            run({"size", "five-bar", "--load", "1,2,0", "--json"}).json()["drives"]);
+}
+
 }  // namespace
 }  // namespace zwidth::testing

@@ -153,7 +153,7 @@ TEST(Size, WrongLoadsAndPosturesAreExplained) {
       {{"size", "seven-dof", "--posture", "critical 9"}, "is no [[posture]]"},
       {{"size", "seven-dof", "--position", "0.3,0,0.1"}, "leaves its posture open"},
       {{"size", "seven-dof", "--load", "0,0,1", "--kind", "peek"}, "did you mean \"peak\"?"},
-      {{"size", "seven-dof", "--joints", "0,1"}, "7 are expected"},
+      {{"size", "seven-dof", "--joints", "0,1"}, "give 7 values"},
   };
   for (const Mistake& mistake : mistakes) {
     const Outcome outcome = run(mistake.arguments);

@@ -232,10 +232,14 @@ TEST(PositioningArm, KnowsWhatItIsNot) {
   device = prototype(Prototype2{});
   std::get<SerialDescription>(device.mechanism).joints[0].a = 0.0;  // no upper arm
   EXPECT_FALSE(PositioningArm::of(leg(device)));
-  // A tool that is a whole frame is not asked for by a position.
+  // Of a tool that is a whole frame a position alone leaves the wrist open.
   device = prototype(Prototype3{});
-  std::get<SerialDescription>(device.mechanism).platform = PlatformFreedom::rigid;
-  EXPECT_EQ(positioning_closed_form(std::get<SerialDescription>(device.mechanism)), nullptr);
+  auto& arm = std::get<SerialDescription>(device.mechanism);
+  arm.platform = PlatformFreedom::rigid;
+  EXPECT_FALSE(positioning_closed_form(arm)->covers({.match = Match::position}));
+  EXPECT_TRUE(positioning_closed_form(arm)->covers({}));
+  arm.platform = PlatformFreedom::translation;
+  EXPECT_EQ(positioning_closed_form(arm), nullptr);
 }
 
 TEST(PositioningArm, AxesMayRunTheOtherWay) {

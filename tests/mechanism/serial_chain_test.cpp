@@ -1,12 +1,10 @@
 #include "zwidth/mechanism/serial_chain.h"
 
 #include <gtest/gtest.h>
-#include <kdl/chain.hpp>
-#include <kdl/chainfksolverpos_recursive.hpp>
-#include <kdl/chainjnttojacsolver.hpp>
 
 #include "support/allocation_counter.h"
 #include "support/arms.h"
+#include "support/kdl_arm.h"
 #include "support/storm.h"
 
 #include "zwidth/mechanism/families.h"
@@ -27,28 +25,7 @@ ActiveVector random_joints(std::mt19937_64& random, const SerialDescription& arm
   return q;
 }
 
-// The same rows for KDL, which has the joint in front of the row's constant transform.
-class KdlArm {
- public:
-  explicit KdlArm(const SerialDescription& arm) {
-    for (const SerialJointDescription& row : arm.joints) {
-      const KDL::Joint::JointType type = row.type == SerialJointType::fixed       ? KDL::Joint::None
-                                         : row.type == SerialJointType::prismatic ? KDL::Joint::TransZ
-                                                                                  : KDL::Joint::RotZ;
-      chain_.addSegment(KDL::Segment(KDL::Joint(type), KDL::Frame::DH(row.a, row.alpha, row.d, row.theta)));
-    }
-  }
-  void forward(const ActiveVector& q, KDL::Frame& frame, KDL::Jacobian& jacobian) {
-    KDL::JntArray joints(chain_.getNrOfJoints());
-    for (unsigned j = 0; j < chain_.getNrOfJoints(); ++j) joints(j) = q[j];
-    jacobian.resize(chain_.getNrOfJoints());
-    KDL::ChainFkSolverPos_recursive(chain_).JntToCart(joints, frame);
-    KDL::ChainJntToJacSolver(chain_).JntToJac(joints, jacobian);
-  }
-
- private:
-  KDL::Chain chain_;
-};
+using test::KdlArm;
 
 double worst_difference(const SerialForward& ours, const KDL::Frame& frame, const KDL::Jacobian& jacobian) {
   double worst = (ours.jacobian - jacobian.data).cwiseAbs().maxCoeff();

@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
+#include <numbers>
 
+#include "support/arms.h"
 #include "support/deltas.h"
+#include "support/five_bars.h"
 #include "support/storm.h"
 
 #include "zwidth/mechanism/batch_delta.h"
+#include "zwidth/mechanism/families.h"
 #include "zwidth/mechanism/jacobian.h"
 #include "zwidth/mechanism/posture.h"
 
@@ -104,6 +108,33 @@ TEST(SolveForward, AnglesBeyondTheRangeAnswerJointLimitWithThePosture) {
     EXPECT_EQ(solution.status, SolveStatus::joint_limit);
     EXPECT_EQ(solution.joint, delta.active_joint(2));
     ASSERT_TRUE(solution);
+  }
+}
+
+// Cranks beside each other and far apart, so that both cannot point outwards at once: the straight way from
+// above to below is barred, and one crank must go round the inside.
+TEST(SolveForward, GoesRoundTheOtherWayWhereTheStraightWayIsBarred) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const Description five_bar = test::five_bar_device({.crank = 0.10, .coupler = 0.15, .half_base = 0.10});
+  const ActiveVector home = Vector2(120.0 * kDegree, 60.0 * kDegree),
+                     target = Vector2(250.0 * kDegree, -70.0 * kDegree);
+  const JointVector joints = solve_forward(Mechanism(five_bar), home).posture->joints();
+  for (const bool turns : {true, false}) {
+    Description device = spelled_out(five_bar);
+    int next = 0;
+    for (LegDescription& leg : std::get<LegsDescription>(device.mechanism).legs) {
+      for (JointDescription& joint : leg.joints) {
+        joint.home = joints[next++];
+        if (joint.active) joint.range = turns ? Interval{-7.0, 7.0} : Interval{-1.3, 4.5};
+      }
+    }
+    const Mechanism legs(device);
+    const Solution solution = solve_forward(legs, target, kGeneral);
+    EXPECT_EQ(solution.status, turns ? SolveStatus::reached : SolveStatus::unreachable);
+    if (!turns) continue;  // a joint that does not go round has one way only
+    EXPECT_LT((solution.posture->active() - target).norm(), 1e-15);
+    EXPECT_LT(solution.residual, 1e-12);
+    EXPECT_FALSE(solve_forward(legs, target, {.closed_form = false, .restart = false}));
   }
 }
 
@@ -224,6 +255,54 @@ TEST(SolveInverseAll, IsEmptyOutOfReach) {
   const Mechanism delta = published();
   EXPECT_TRUE(solve_inverse_all(delta, {.position = {0.0, 0.0, 0.5}}).empty());
   EXPECT_TRUE(solve_inverse_all(delta, {.position = {0.0, 0.0, 0.5}}, kGeneral).empty());
+}
+
+Mechanism six_joint_arm(std::mt19937_64& random, const Interval& range) {
+  Description device;
+  device.name = "arm";
+  SerialDescription arm = test::random_arm(random, 6, false);
+  for (SerialJointDescription& row : arm.joints) row.range = range;
+  device.mechanism = arm;
+  return Mechanism(device);
+}
+
+// Six joints in any order have no closed form: one posture within the ranges is as good as any.
+TEST(SolveInverse, OfAnyArmOneWithinTheRangesIsTakenIfOneIsFound) {
+  std::mt19937_64 random(19);
+  int within = 0;
+  for (int n = 0; n < 150; ++n) {
+    const Mechanism arm = six_joint_arm(random, {-1.6, 1.6});
+    ActiveVector q(6);
+    for (double& one : q) one = test::arm_uniform(random, -1.5, 1.5);
+    const Pose tool = solve_forward(arm, q).posture->tool();
+    const Solution one = solve_inverse(arm, tool, kGeneral);
+    bool some = false;
+    for (const Solution& other : solve_inverse_all(arm, tool, kGeneral))
+      some = some || other.status != SolveStatus::joint_limit;
+    if (!some) continue;
+    ASSERT_TRUE(one) << n;
+    EXPECT_NE(one.status, SolveStatus::joint_limit) << n;
+    EXPECT_LT((one.posture->tool().position - tool.position).norm(), 1e-9);
+    EXPECT_LT(one.residual, 1e-10);
+    ++within;
+  }
+  EXPECT_GT(within, 100);
+}
+
+TEST(SolveInverse, FollowsJointsBeyondHalfATurn) {
+  std::mt19937_64 random(20);
+  for (int n = 0; n < 100; ++n) {
+    const Mechanism arm = six_joint_arm(random, {-7.0, 7.0});
+    ActiveVector q(6);
+    for (double& one : q) one = test::arm_uniform(random, -6.5, 6.5);
+    const Solution start = solve_forward(arm, q);
+    if (start.conditioning < 1e-2) continue;
+    q.array() += 0.002;
+    const Solution moved = solve_inverse(arm, solve_forward(arm, q).posture->tool(),
+                                         {.start = &*start.posture, .closed_form = false});
+    ASSERT_TRUE(moved);
+    EXPECT_LT((moved.posture->active() - q).norm(), 1e-7) << n;
+  }
 }
 
 }  // namespace

@@ -34,6 +34,8 @@ int run_at(const at::Arguments& arguments, const Terminal& terminal) {
   at::Answer answer(terminal, arguments.only);
   answer.put("device", model.description.name);
   answer.put("status", status);
+  const bool degraded = found.solution.near_singularity();
+  answer.put("degraded", degraded);
   answer.put("frame", arguments.frame);
   std::string where = arguments.joints.empty() ? arguments.position : arguments.joints;
   if (!arguments.orientation.empty()) where += ", turned " + arguments.orientation;
@@ -41,10 +43,9 @@ int run_at(const at::Arguments& arguments, const Terminal& terminal) {
   answer.page().title(
       fmt::format("{} at {}", model.description.name, where),
       arguments.frame == "user" ? "user's frame: x to the user, y right, z up" : "device frame");
-  const Tint tint = !found.reached()                                 ? Tint::bad
-                    : found.solution.status == SolveStatus::degraded ? Tint::warning
-                                                                     : Tint::good;
-  answer.page().row("status", tinted(terminal, tint, status));
+  const Tint tint = !found.reached() ? Tint::bad : degraded ? Tint::warning : Tint::good;
+  const bool both = degraded && found.solution.status != SolveStatus::degraded;
+  answer.page().row("status", tinted(terminal, tint, fmt::format("{}{}", status, both ? ", degraded" : "")));
   at::write_choice(found, model, answer);
   if (!found.reason.empty()) answer.page().paragraph(found.reason, 2, Tint::bad);
 
@@ -86,7 +87,9 @@ void add_at(CLI::App& app, Context& context) {
       "a pose needs one of them.");
   auto arguments = std::make_shared<at::Arguments>();
   add_device_arguments(*verb, *arguments);
-  verb->add_option("--joints", arguments->joints, "values of the active joints, between commas")
+  verb->add_option("--joints", arguments->joints,
+                   "values of the active joints, between commas; those that the hand alone moves may be left "
+                   "out, and are then at home")
       ->type_name("A,B,...");
   verb->add_option("--position", arguments->position, "position of the tool; X,Y of one that moves in a plane")
       ->type_name("X,Y,Z");

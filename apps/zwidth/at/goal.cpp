@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "joint_values.h"
+
 #include "zwidth/description/names.h"
 #include "zwidth/description/problem.h"
 
@@ -150,7 +152,7 @@ void read_goal(const Arguments& arguments, const Mechanism& mechanism, const Fra
   if (!arguments.near.empty()) {
     if (!arm) throw InputError(fmt::format("--near: {} is no arm of one leg; leave it out", mechanism.name()));
     if (arguments.near != "home") {
-      const ActiveVector joints = joint_option("--near", arguments.near, mechanism, 0);
+      const ActiveVector joints = joint_values("--near", arguments.near, mechanism);
       goal.near = solve_forward(mechanism, joints).posture;
       goal.options.start = &*goal.near;
       goal.near_text = arguments.near;

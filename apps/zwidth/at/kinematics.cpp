@@ -16,13 +16,15 @@ namespace zwidth::at {
 
 namespace {
 
-constexpr double kNear = 1e-4;  // as the solvers call a posture degraded
+constexpr double kNear = kNearSingularity;
 
 }  // namespace
 
 void write_joints(const Situation& at, Answer& answer) {
   Json names = Json::array(), values = Json::array(), passive_names = Json::array(), passive = Json::array();
+  Json free_names = Json::array();
   for (int i = 0; i < at.mechanism.active_count(); ++i) {
+    if (at.mechanism.is_free(i)) free_names.push_back(at.mechanism.active_names()[static_cast<size_t>(i)]);
     names.push_back(at.mechanism.active_names()[static_cast<size_t>(i)]);
     values.push_back(json_number(at.posture.active()[i]));
   }
@@ -41,12 +43,16 @@ void write_joints(const Situation& at, Answer& answer) {
                                                     joint_text(at.mechanism, j, joint.range.max))
                                       : "";
     if (active || answer.wants("passive_joints"))
-      rows.push_back(
-          {name, joint_text(at.mechanism, j, at.posture.joints()[j]), active ? "active" : "passive", range});
+      rows.push_back({name, joint_text(at.mechanism, j, at.posture.joints()[j]),
+                      !active      ? "passive"
+                      : joint.free ? "free"
+                                   : "active",
+                      range});
   }
   answer.page().table({"joint", "value", "", "range"}, rows);
   answer.put("joint_names", names);
   answer.put("joints", values);
+  answer.put("free_joint_names", free_names);
   answer.put("passive_joint_names", passive_names);
   answer.put("passive_joints", passive);
 }
@@ -133,7 +139,7 @@ void write_arm(const Situation& at, Json& entry, Answer& answer) {
   constexpr double kClose = 1e-3;  // [rad]
   const auto nearest = std::min_element(sets.begin(), sets.end(),
                                         [](const auto& a, const auto& b) { return a.distance < b.distance; });
-  const bool singular = at.singularity.loses || at.status == SolveStatus::degraded;
+  const bool singular = at.singularity.loses || at.degraded;
   Json names = Json::array(), list = Json::array();
   std::vector<std::vector<std::string>> rows;
   for (auto set = sets.begin(); set != sets.end(); ++set) {
@@ -210,7 +216,7 @@ std::string write_singular_ways(const Situation& at, Json& entry) {
                         text.empty() ? "" : " ", directions_text(found.lost),
                         barring_text(at.mechanism, found.lost));
   }
-  if (found.gains || found.loses || at.status != SolveStatus::degraded) return text;
+  if (found.gains || found.loses || !at.degraded) return text;
   const bool gains = at.rates.closure < kNear;
   entry["kind"] = gains ? "the tool gains a freedom" : "the tool loses a freedom";
   if (gains) {

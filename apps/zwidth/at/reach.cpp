@@ -4,6 +4,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "joint_values.h"
+
 #include "zwidth/math/svd.h"
 #include "zwidth/mechanism/delta.h"
 
@@ -135,7 +137,7 @@ void find_posture(const Model& model, const Arguments& arguments, const Frame& f
     found.solutions = solve_inverse_all(mechanism, found.goal.tool, found.goal.options);
     hold_to_target(found, mechanism);
   } else {
-    found.solution = solve_forward(mechanism, joint_option("--joints", arguments.joints, mechanism, 0));
+    found.solution = solve_forward(mechanism, joint_values("--joints", arguments.joints, mechanism));
   }
   if (!found.reason.empty()) return;
   if (!found.solution) {
@@ -178,12 +180,14 @@ void write_branches(const Found& found, const Model& model, Answer& answer) {
     Json entry;
     entry["status"] = to_string(solution.status);
     entry["within_range"] = solution.status != SolveStatus::joint_limit;
+    entry["degraded"] = solution.near_singularity();
     entry["assembly"] = solution.other_assembly ? "other" : "own";
     entry["joints"] = json_array(solution.posture->active());
     entry["residual"] = json_number(solution.residual);
     list.push_back(entry);
     others = others || solution.other_assembly;
-    std::vector<std::string> row{to_string(solution.status)};
+    const bool both = solution.near_singularity() && solution.status != SolveStatus::degraded;
+    std::vector<std::string> row{fmt::format("{}{}", to_string(solution.status), both ? ", degraded" : "")};
     if (!arm) row.emplace_back(solution.other_assembly ? "other" : "own");
     for (int i = 0; i < mechanism.active_count(); ++i)
       row.push_back(joint_text(mechanism, mechanism.active_joint(i), solution.posture->active()[i]));
@@ -228,11 +232,17 @@ void write_nearest(Found& found, const Model& model, const Arguments& arguments,
   answer.axes();
   answer.cells("position [mm]", p, kMilli, "", 6, 1e-8);
   answer.cell("distance [mm]", point->distance * kMilli);
-  // Joint values, because a rounded position may lie outside again.
+  // Joint values, because a rounded position may lie outside again; free joints at home need not be said.
+  bool free_at_home = true;
+  for (int i = 0; i < mechanism.active_count(); ++i) {
+    const double home = mechanism.home_guess()[mechanism.active_joint(i)];
+    free_at_home = free_at_home && (!mechanism.is_free(i) || point->joints[i] == home);
+  }
   std::string joints;
   for (int i = 0; i < mechanism.active_count(); ++i) {
+    if (free_at_home && mechanism.is_free(i)) continue;
     const bool slide = slides(mechanism, mechanism.active_joint(i));
-    joints += fmt::format("{}{}{}", i > 0 ? "," : "",
+    joints += fmt::format("{}{}{}", joints.empty() ? "" : ",",
                           trimmed(point->joints[i] * (slide ? kMilli : kDegrees), 7), slide ? "mm" : "deg");
   }
   answer.page().row("try", fmt::format("zwidth at {} --joints {}", arguments.device, joints));

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "joint_values.h"
 
 #include "zwidth/description/problem.h"
 
@@ -19,8 +22,8 @@ constexpr const char* kLoad = "give --load";
 constexpr const char* kTorque = "give --torque";
 
 /// Keys of the head, and of the answer to --position; `write_sections` does not write them.
-const std::vector<std::string> kOtherKeys = {"device", "status", "frame",     "reason",
-                                             "notes",  "choice", "solutions", "nearest_reachable"};
+const std::vector<std::string> kOtherKeys = {
+    "device", "status", "degraded", "frame", "reason", "notes", "choice", "solutions", "nearest_reachable"};
 
 std::vector<SingularWay> ways_of(const Mechanism& mechanism, const std::vector<SingularDirection>& directions,
                                  const Frame& frame) {
@@ -40,7 +43,7 @@ std::vector<SingularWay> ways_of(const Mechanism& mechanism, const std::vector<S
 }
 
 /// Looks for singularities, and takes from J what is only rounding.
-Singularity find_singularity(const Posture& posture, SolveStatus status, const Rates& rates, const Frame& frame,
+Singularity find_singularity(const Posture& posture, bool degraded, const Rates& rates, const Frame& frame,
                              Jacobian& J) {
   const Mechanism& mechanism = posture.mechanism();
   Singularity result;
@@ -49,7 +52,7 @@ Singularity find_singularity(const Posture& posture, SolveStatus status, const R
   if (result.gains) result.free = ways_of(mechanism, exact.gained, frame);
   result.loses = !exact.lost.empty();
   result.lost = ways_of(mechanism, exact.lost, frame);
-  if (status == SolveStatus::degraded && !result.gains && !result.loses) {
+  if (degraded && !result.gains && !result.loses) {
     constexpr double kNear = 1e-3;  // whatever makes the solvers call a posture degraded is within it
     const SingularDirections near = singular_directions(posture, kNear);
     result.hardly = ways_of(mechanism, near.lost, frame);
@@ -77,16 +80,6 @@ std::vector<double> option_values(const char* option, const std::string& text,
     throw InputError(fmt::format("{} \"{}\": {}{}", option, text, values.rule,
                                  values.advice.empty() ? "" : "; " + values.advice));
   return values.values;
-}
-
-ActiveVector joint_option(const char* option, const std::string& text, const Mechanism& mechanism, int order) {
-  constexpr Dimension kTurns[] = {Dimension::angle, Dimension::angular_speed, Dimension::angular_acceleration};
-  constexpr Dimension kSlides[] = {Dimension::length, Dimension::speed, Dimension::acceleration};
-  std::vector<Dimension> dimensions;
-  for (int i = 0; i < mechanism.active_count(); ++i)
-    dimensions.push_back((slides(mechanism, mechanism.active_joint(i)) ? kSlides : kTurns)[order]);
-  const std::vector<double> values = option_values(option, text, dimensions);
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 int Frame::linear() const {
@@ -125,28 +118,36 @@ Situation::Situation(const Model& of, const Arguments& arguments, const Frame& u
     : model(of),
       mechanism(of.mechanism),
       posture(*solution.posture),
-      status(solution.status),
+      degraded(solution.near_singularity()),
       frame(user),
       rates(zwidth::rates(posture)),
       J(frame.turn * rates.tool),
-      singularity(find_singularity(posture, status, rates, frame, J)),
+      singularity(find_singularity(posture, degraded, rates, frame, J)),
       rate(ActiveVector::Zero(mechanism.active_count())),
       acceleration(rate),
       moving(!arguments.rate.empty() || !arguments.acceleration.empty()) {
-  if (!arguments.rate.empty()) rate = joint_option("--rate", arguments.rate, mechanism, 1);
+  if (!arguments.rate.empty()) rate = joint_values("--rate", arguments.rate, mechanism, 1);
   if (!arguments.acceleration.empty())
-    acceleration = joint_option("--acceleration", arguments.acceleration, mechanism, 2);
-  if (!arguments.torque.empty()) {
-    std::vector<Dimension> dimensions;
-    for (int i = 0; i < mechanism.active_count(); ++i)
-      dimensions.push_back(slides(mechanism, mechanism.active_joint(i)) ? Dimension::force : Dimension::torque);
-    const std::vector<double> values = option_values("--torque", arguments.torque, dimensions);
-    torque = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-  }
+    acceleration = joint_values("--acceleration", arguments.acceleration, mechanism, 2);
+  if (!arguments.torque.empty()) torque = joint_values("--torque", arguments.torque, mechanism, 3);
   if (!arguments.load.empty()) {
     // The force alone, or the moment with it.
     const auto given = static_cast<int>(std::count(arguments.load.begin(), arguments.load.end(), ',')) + 1;
-    const bool force_alone = frame.linear() > 0 && given <= frame.linear();
+    const int all = static_cast<int>(frame.axes.size()), linear = frame.linear();
+    const bool force_alone = linear > 0 && given <= linear;
+    if (given != all && !(linear > 0 && given == linear)) {
+      const std::vector<std::string> names = frame.names();
+      const std::string force =
+          fmt::format("a force along {}", fmt::join(names.begin(), names.begin() + linear, ", "));
+      const std::string moment =
+          fmt::format("a moment about {}", fmt::join(names.begin() + linear, names.end(), ", "));
+      std::string wanted =
+          linear > 0 ? fmt::format("give {}, {}", linear, force) : fmt::format("give {}, {}", all, moment);
+      if (linear > 0 && linear < all) wanted += fmt::format(", or {} with {}", all, moment);
+      if (linear == all) wanted += "; the tool does not turn, so it takes no moment";
+      throw InputError(fmt::format("--load \"{}\": has {} {}; {}", arguments.load, given,
+                                   given == 1 ? "entry" : "entries", wanted));
+    }
     std::vector<Dimension> dimensions;
     for (const int axis : frame.axes) {
       if (axis < 3 || !force_alone) dimensions.push_back(axis < 3 ? Dimension::force : Dimension::torque);
@@ -159,7 +160,9 @@ Situation::Situation(const Model& of, const Arguments& arguments, const Frame& u
 
 const std::vector<Section>& sections() {
   static const std::vector<Section> table = {
-      {"Joints", {"joint_names", "joints", "passive_joint_names", "passive_joints"}, write_joints},
+      {"Joints",
+       {"joint_names", "joints", "free_joint_names", "passive_joint_names", "passive_joints"},
+       write_joints},
       {"Tool", {"tool_axes"}, write_tool_axes},
       {"Tool", {"position"}, write_position},
       {"Tool", {"orientation"}, write_orientation},

@@ -37,8 +37,6 @@ struct Arguments : DeviceArguments {
 /// The values of one option, or InputError.
 std::vector<double> option_values(const char* option, const std::string& text,
                                   const std::vector<Dimension>& dimensions);
-/// The same, one per active joint: their values (order 0), rates (1) or accelerations (2).
-ActiveVector joint_option(const char* option, const std::string& text, const Mechanism& mechanism, int order);
 
 /// The frame in which the user gives and reads tool vectors: the base frame, or the user's.
 struct Frame {
@@ -79,7 +77,7 @@ struct Situation {
   const Model& model;
   const Mechanism& mechanism;
   const Posture& posture;
-  SolveStatus status;
+  bool degraded;  ///< near a singularity
   Frame frame;
   Rates rates;  ///< as the library gives them, in the base frame
   Jacobian J;   ///< with singular values that are rounding made zero

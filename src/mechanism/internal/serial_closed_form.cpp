@@ -237,29 +237,46 @@ bool SerialClosedForm::follow(const Question& question, Candidates& candidates) 
   return true;
 }
 
-SolveStatus SerialClosedForm::given(const Question& question, SrsGiven joint, double angle,
-                                    Candidates& candidates) const noexcept {
-  SrsStatus status;
+// Every posture with a joint of the shoulder at an angle; of them only those with another, `also`, at its angle
+// too.
+SrsStatus SerialClosedForm::ask(const Question& question, SrsGiven joint, double angle, const Angle* also,
+                                Candidates& candidates) const noexcept {
+  const auto agrees = [&](const auto& theta) {
+    return also == nullptr || gap(theta[static_cast<std::size_t>(also->joint) - 1], also->angle) < kSameAngle;
+  };
   if (question.match == Match::position) {
     const SrsArmSolutions arms = srs_arm_inverse(srs_->lengths, question.wrist.position, joint, angle);
-    status = arms.status;
     for (int i = 0; i < arms.count; ++i) {
+      if (!agrees(arms.theta[i])) continue;
       SrsAngles theta{};
       std::copy(arms.theta[i].begin(), arms.theta[i].end(), theta.begin());
       candidates.add(candidate(question, theta));
     }
-  } else {
-    const SrsSolutions all = srs_inverse(srs_->lengths, question.wrist, joint, angle, question.near[4]);
-    status = all.status;
-    for (int i = 0; i < all.count; ++i) candidates.add(candidate(question, all.theta[i]));
+    return arms.status;
   }
+  const SrsSolutions all = srs_inverse(srs_->lengths, question.wrist, joint, angle, question.near[4]);
+  for (int i = 0; i < all.count; ++i) {
+    if (agrees(all.theta[i])) candidates.add(candidate(question, all.theta[i]));
+  }
+  return all.status;
+}
+
+SolveStatus SerialClosedForm::given(const Question& question, SrsGiven joint, double angle,
+                                    Candidates& candidates) const noexcept {
+  const SrsStatus status = ask(question, joint, angle, nullptr, candidates);
   switch (status) {
     case SrsStatus::solved:
     case SrsStatus::singular_wrist:
       return SolveStatus::reached;
     case SrsStatus::theta1_undefined:
-    case SrsStatus::theta2_undefined:
-      return SolveStatus::degenerate;
+    case SrsStatus::theta2_undefined: {
+      // The wrist lies on that joint's axis, which may turn as it likes: it stays as it is.
+      const SrsGiven open = status == SrsStatus::theta1_undefined ? SrsGiven::theta1 : SrsGiven::theta2;
+      if (open == joint) return SolveStatus::degenerate;
+      const Angle also{joint, angle};
+      ask(question, open, question.near[static_cast<std::size_t>(open) - 1], &also, candidates);
+      return candidates.count() > 0 ? SolveStatus::reached : SolveStatus::degenerate;
+    }
     case SrsStatus::singular_elbow: {
       // Stretched or folded, theta3 is open and the others are decided.
       const int given = static_cast<int>(joint) - 1;
@@ -366,7 +383,9 @@ std::shared_ptr<const ClosedForm> closed_form_of(const SerialDescription& arm) {
 std::shared_ptr<const ClosedForm> closed_form_of(const LegsDescription& legs) {
   if (legs.platform != PlatformFreedom::rigid || legs.legs.size() != 1) return nullptr;
   const auto rows = rows_of(legs.legs.front());
-  return rows ? std::make_shared<internal::SerialClosedForm>(*rows, legs.legs.front()) : nullptr;
+  if (!rows) return nullptr;
+  if (auto positioning = positioning_closed_form(*rows)) return positioning;
+  return std::make_shared<internal::SerialClosedForm>(*rows, legs.legs.front());
 }
 
 }  // namespace zwidth

@@ -67,6 +67,13 @@ class SerialClosedForm final : public ClosedForm {
 
   SolveStatus solve(Question& question, Candidates& candidates) const noexcept;
   SolveStatus keep(Question& question, Candidates& candidates) const noexcept;
+  /// One of theta1 to theta3, and where it is [rad].
+  struct Angle {
+    SrsGiven joint;
+    double angle;
+  };
+  SrsStatus ask(const Question& question, SrsGiven joint, double angle, const Angle* also,
+                Candidates& candidates) const noexcept;
   SolveStatus given(const Question& question, SrsGiven joint, double angle,
                     Candidates& candidates) const noexcept;
   Cuts cuts_of(const Question& question, double own) const noexcept;

@@ -48,6 +48,7 @@ std::optional<std::string> library_of(const std::string& include) {
                                                                 {"tbb/", "TBB::tbb"},
                                                                 {"oneapi/tbb", "TBB::tbb"},
                                                                 {"hwy/", "hwy::hwy"},
+                                                                {"pagmo/", "Pagmo::pagmo"},
                                                                 {"mujoco/", "mujoco::mujoco"},
                                                                 {"kdl/", "orocos_kdl::orocos_kdl"},
                                                                 {"gtest/", "GTest::gtest"},

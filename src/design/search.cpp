@@ -1,0 +1,1 @@
+#include "zwidth/design/search.h"

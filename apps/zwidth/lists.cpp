@@ -18,7 +18,7 @@ int devices(bool json, const Terminal& terminal) {
   Json list = Json::array();
   Sheet sheet(terminal);
   std::vector<std::vector<std::string>> rows;
-  for (const BuiltinDevice& device : catalogue().devices()) {
+  for (const BuiltinFile& device : catalogue().devices()) {
     Json entry;
     entry["name"] = device.name;
     entry["title"] = device.title;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <system_error>
 
 #include "zwidth/description/internal/part_reader.h"
@@ -41,27 +42,27 @@ std::vector<Part> load_parts(const fs::path& path, std::vector<Problem>& problem
   return parts;
 }
 
-// The title in a device file, without judging the rest of it.
-std::string title_of(const fs::path& path) {
+// The title in a file's first table, without judging the rest of it.
+std::string title_of(const fs::path& path, std::string_view table) {
   try {
     const Input input(read_text(path.string()), path.string());
-    if (const auto title = input.root()["device"]["title"].value<std::string>()) return *title;
+    if (const auto title = input.root()[table]["title"].value<std::string>()) return *title;
     return path.stem().string();
   } catch (const DescriptionError&) {
     return "(cannot be read)";
   }
 }
 
-std::vector<BuiltinDevice> list_devices(const fs::path& directory) {
-  std::vector<BuiltinDevice> devices;
+std::vector<BuiltinFile> list_files(const fs::path& directory, std::string_view table) {
+  std::vector<BuiltinFile> files;
   std::error_code error;
   for (const fs::directory_entry& file : fs::directory_iterator(directory, error)) {
     if (file.path().extension() != ".toml") continue;
-    devices.push_back(
-        {.name = file.path().stem().string(), .title = title_of(file.path()), .path = file.path()});
+    files.push_back(
+        {.name = file.path().stem().string(), .title = title_of(file.path(), table), .path = file.path()});
   }
-  std::sort(devices.begin(), devices.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
-  return devices;
+  std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  return files;
 }
 
 }  // namespace
@@ -100,7 +101,8 @@ Catalogue Catalogue::load(const fs::path& directory) {
   catalogue.regulators_ = load_parts<Regulator>(parts / "regulators.toml", problems);
   catalogue.potentiometers_ = load_parts<Potentiometer>(parts / "potentiometers.toml", problems);
   if (!problems.empty()) throw DescriptionError(std::move(problems));
-  catalogue.devices_ = list_devices(directory / "devices");
+  catalogue.devices_ = list_files(directory / "devices", "device");
+  catalogue.studies_ = list_files(directory / "studies", "study");
   return catalogue;
 }
 
@@ -168,19 +170,32 @@ template const Cylinder* Catalogue::find<Cylinder>(std::string_view) const;
 template const Regulator* Catalogue::find<Regulator>(std::string_view) const;
 template const Potentiometer* Catalogue::find<Potentiometer>(std::string_view) const;
 
-fs::path resolve_device(std::string_view device, const Catalogue& catalogue) {
+namespace {
+
+// `what` is "device" or "study".
+fs::path resolve(std::string_view name, const std::vector<BuiltinFile>& builtins, std::string_view what) {
   std::vector<std::string> names;
-  for (const BuiltinDevice& builtin : catalogue.devices()) {
-    if (builtin.name == device) return builtin.path;
+  for (const BuiltinFile& builtin : builtins) {
+    if (builtin.name == name) return builtin.path;
     names.push_back(builtin.name);
   }
-  const std::string path(device);
+  const std::string path(name);
   std::error_code error;
   if (path.find('/') != path.npos || path.ends_with(".toml") || (!path.empty() && fs::exists(path, error)))
     return path;
   throw DescriptionError({{.file = path.empty() ? "\"\"" : path,
-                           .rule = "is neither a built-in device nor a file",
+                           .rule = fmt::format("is neither a built-in {} nor a file", what),
                            .advice = suggest(path, names) + " (a path has a '/' or ends in .toml)"}});
+}
+
+}  // namespace
+
+fs::path resolve_device(std::string_view device, const Catalogue& catalogue) {
+  return resolve(device, catalogue.devices(), "device");
+}
+
+fs::path resolve_study(std::string_view study, const Catalogue& catalogue) {
+  return resolve(study, catalogue.studies(), "study");
 }
 
 }  // namespace zwidth

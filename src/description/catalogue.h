@@ -15,10 +15,10 @@ namespace zwidth {
 /// directory, else the directory that zwidth was configured to install to.
 std::filesystem::path default_data_directory();
 
-/// A device that comes with zwidth.
-struct BuiltinDevice {
+/// A device or a study that comes with zwidth.
+struct BuiltinFile {
   std::string name;   ///< file name without ".toml", as commands take it
-  std::string title;  ///< [device] title; says so if the file cannot be read
+  std::string title;  ///< title in its first table; says so if the file cannot be read
   std::filesystem::path path;
 };
 
@@ -30,8 +30,8 @@ class Catalogue {
 
   /// Reads
   /// DIRECTORY/parts/{motors,gearheads,encoders,amplifiers,cables,bearings,materials,laminae,cylinders,
-  /// regulators,potentiometers}.toml and lists DIRECTORY/devices/*.toml. Throws DescriptionError with
-  /// everything that is wrong in the parts files.
+  /// regulators,potentiometers}.toml and lists DIRECTORY/devices/*.toml and DIRECTORY/studies/*.toml. Throws
+  /// DescriptionError with everything that is wrong in the parts files.
   static Catalogue load(const std::filesystem::path& directory = default_data_directory());
 
   /// Parts of one kind (Motor, Gearhead, Encoder, Amplifier, Cable, Bearing, Material, Lamina, Cylinder,
@@ -42,7 +42,8 @@ class Catalogue {
   template <class Part>
   const Part* find(std::string_view name) const;
 
-  const std::vector<BuiltinDevice>& devices() const { return devices_; }  ///< by name
+  const std::vector<BuiltinFile>& devices() const { return devices_; }  ///< by name
+  const std::vector<BuiltinFile>& studies() const { return studies_; }  ///< by name
   const std::filesystem::path& directory() const { return directory_; }
 
  private:
@@ -58,13 +59,16 @@ class Catalogue {
   std::vector<Cylinder> cylinders_;
   std::vector<Regulator> regulators_;
   std::vector<Potentiometer> potentiometers_;
-  std::vector<BuiltinDevice> devices_;
+  std::vector<BuiltinFile> devices_;
+  std::vector<BuiltinFile> studies_;
 };
 
 /// File that DEVICE on a command line means: a built-in device by name, else a path (anything with a '/' or
 /// ending in
 /// ".toml"). Throws DescriptionError with the built-ins and the nearest of them if it is neither.
 std::filesystem::path resolve_device(std::string_view device, const Catalogue& catalogue);
+/// The same for STUDY.
+std::filesystem::path resolve_study(std::string_view study, const Catalogue& catalogue);
 
 /// One value of a part, for lists and tables.
 struct PartValue {

@@ -5,6 +5,7 @@
 #include "zwidth/description/internal/checks.h"
 #include "zwidth/description/internal/description_reader.h"
 #include "zwidth/description/internal/table_reader.h"
+#include "zwidth/description/validate.h"
 
 namespace zwidth {
 

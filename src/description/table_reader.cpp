@@ -192,6 +192,64 @@ std::optional<std::vector<std::string>> TableReader::texts(std::string_view key,
   return values;
 }
 
+namespace {
+
+// The text of a number or a string; empty otherwise.
+std::string expression_text(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* integer = node.as_integer()) return std::to_string(integer->get());
+  if (const auto* real = node.as_floating_point(); real != nullptr && std::isfinite(real->get())) {
+    return fmt::format("{}", real->get());
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<std::string> TableReader::expression(std::string_view key, Need need, std::string_view advice) {
+  const toml::node* node = look(key, need, advice);
+  if (node == nullptr) return std::nullopt;
+  std::string text = expression_text(*node);
+  if (!text.empty()) return text;
+  report(key, fmt::format("must be a number or an expression, not {}", kind_of(*node)), std::string(advice));
+  return std::nullopt;
+}
+
+std::vector<std::string> TableReader::expressions(std::string_view key, std::string_view advice) {
+  const toml::node* node = look(key);
+  if (node == nullptr) return {};
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->empty()) {
+    report(key, fmt::format("must be an array of numbers or expressions, not {}", kind_of(*node)),
+           std::string(advice));
+    return {};
+  }
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    texts.push_back(expression_text(*array->get(i)));
+    if (!texts.back().empty()) continue;
+    input_->report(join_path(path(key), i),
+                   fmt::format("must be a number or an expression, not {}", kind_of(*array->get(i))),
+                   std::string(advice));
+  }
+  return texts;
+}
+
+std::optional<AnyQuantity> TableReader::any_quantity(std::string_view key, Need need, std::string_view advice) {
+  const toml::node* node = look(key, need, advice);
+  if (node == nullptr) return std::nullopt;
+  const std::string text = expression_text(*node);
+  std::optional<AnyQuantity> quantity = parse_any_quantity(text);
+  if (!quantity) report(key, "must be a number, or one with a unit", std::string(advice));
+  return quantity;
+}
+
+std::vector<std::string> TableReader::keys() const {
+  std::vector<std::string> keys;
+  for (const auto& [key, node] : *table_) keys.emplace_back(key.str());
+  return keys;
+}
+
 std::optional<TableReader> TableReader::table(std::string_view key, Need need, std::string_view advice) {
   const toml::node* node = look(key, need, advice);
   if (node == nullptr) return std::nullopt;

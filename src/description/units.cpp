@@ -262,6 +262,19 @@ ParsedQuantity parse_quantity(std::string_view text, Dimension dimension) {
   return {.value = value, .rule = {}, .advice = {}};
 }
 
+std::optional<AnyQuantity> parse_any_quantity(std::string_view text) {
+  if (const ParsedQuantity number = parse_quantity(text, Dimension::number)) {
+    const bool plain = text.find_first_not_of("+-.0123456789eE \t") == std::string_view::npos;
+    return AnyQuantity{*number.value, plain ? std::nullopt : std::optional(Dimension::number)};
+  }
+  for (const DimensionEntry& one : kDimensions) {
+    if (const ParsedQuantity quantity = parse_quantity(text, one.dimension)) {
+      return AnyQuantity{*quantity.value, one.dimension};
+    }
+  }
+  return std::nullopt;
+}
+
 ParsedQuantities parse_quantity_list(std::string_view text, std::span<const Dimension> dimensions) {
   ParsedQuantities result;
   std::vector<std::string_view> entries;

@@ -61,6 +61,14 @@ struct ParsedQuantity {
 /// angular speed and "deg" no plain number. Garbage, NaN and infinities come back as a rule that was broken.
 ParsedQuantity parse_quantity(std::string_view text, Dimension dimension);
 
+/// A quantity of whatever kind its unit says; a number without a unit is of no kind in particular.
+struct AnyQuantity {
+  double value = 0.0;                  ///< SI
+  std::optional<Dimension> dimension;  ///< none without a unit
+};
+/// Reads "80 mm" without being told what it is. Empty where `parse_quantity` takes it for no dimension.
+std::optional<AnyQuantity> parse_any_quantity(std::string_view text);
+
 struct ParsedQuantities {
   std::vector<double> values;  ///< SI; empty if anything is wrong
   std::string rule;            ///< why there are no values; names the entry at fault

@@ -13,4 +13,7 @@ namespace zwidth {
 /// drives.
 std::vector<Problem> validate(const Description& description);
 
+/// Of that, what is wrong with the numbers and the geometry: all that can go wrong when numbers change.
+std::vector<Problem> value_problems(const Description& description);
+
 }  // namespace zwidth

@@ -25,7 +25,7 @@ Description read_again(const Description& description) {
 
 TEST(Write, EveryBuiltInDeviceReadsBackEqual) {
   ASSERT_FALSE(catalogue().devices().empty());
-  for (const BuiltinDevice& builtin : catalogue().devices()) {
+  for (const BuiltinFile& builtin : catalogue().devices()) {
     const Description device = read_description(builtin.name, {}, catalogue());
     EXPECT_EQ(read_again(device), device) << builtin.name;
     const Description legs = spelled_out(device);

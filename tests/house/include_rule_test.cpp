@@ -49,6 +49,7 @@ std::optional<std::string> library_of(const std::string& include) {
                                                                 {"oneapi/tbb", "TBB::tbb"},
                                                                 {"hwy/", "hwy::hwy"},
                                                                 {"pagmo/", "Pagmo::pagmo"},
+                                                                {"muParser", "muparser::muparser"},
                                                                 {"mujoco/", "mujoco::mujoco"},
                                                                 {"kdl/", "orocos_kdl::orocos_kdl"},
                                                                 {"gtest/", "GTest::gtest"},

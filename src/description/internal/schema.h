@@ -93,12 +93,33 @@ std::string field_advice(const Field<Owner>& field) {
   return "give the " + std::string(field.meaning) + ", such as " + std::string(field.example);
 }
 
+/// Whether the value of a field breaks no rule.
+template <class Owner>
+bool field_holds(const Owner& owner, const Owner& untouched, const Field<Owner>& field) {
+  const auto good = [&](double value) { return std::isfinite(value) && field.bounds.contains(value); };
+  return std::visit(
+      [&](auto member) {
+        const auto& value = owner.*member;
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, Interval>) {
+          return good(value.min) && good(value.max) && value.min < value.max;
+        } else if constexpr (std::is_same_v<Value, Vector3>) {
+          return good(value[0]) && good(value[1]) && good(value[2]);
+        } else {
+          const auto number = static_cast<double>(value);
+          return good(number) || (std::isnan(number) && std::isnan(static_cast<double>(untouched.*member)));
+        }
+      },
+      field.member);
+}
+
 /// What is wrong with the values of all fields of `owner`, the table at `path`.
 template <class Owner>
 std::vector<Problem> field_problems(const Owner& owner, const std::string& path) {
   static const Owner untouched{};
   std::vector<Problem> problems;
   for (const Field<Owner>& field : fields<Owner>()) {
+    if (field_holds(owner, untouched, field)) continue;  // a design search asks often, and mostly all is well
     const std::string key = join_path(path, field.key);
     const std::string advice = field_advice(field);
     std::visit(

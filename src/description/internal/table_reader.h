@@ -54,12 +54,20 @@ class TableReader {
   std::optional<Matrix3> symmetric(std::string_view key, Dimension dimension, Need need,
                                    std::string_view advice = {});
   std::optional<std::vector<std::string>> texts(std::string_view key, std::string_view advice);
+  /// A number, or an expression in a string, as text.
+  std::optional<std::string> expression(std::string_view key, Need need, std::string_view advice = {});
+  /// An array of them; empty if missing.
+  std::vector<std::string> expressions(std::string_view key, std::string_view advice);
+  /// A number, or a quantity of any dimension.
+  std::optional<AnyQuantity> any_quantity(std::string_view key, Need need, std::string_view advice = {});
   template <class Enum>
   std::optional<Enum> choice(std::string_view key, const std::vector<std::pair<std::string, Enum>>& choices,
                              Need need);
   std::optional<TableReader> table(std::string_view key, Need need, std::string_view advice = {});
   /// An array of tables; empty if missing.
   std::vector<TableReader> tables(std::string_view key);
+  /// The keys of this table, in the order of their names.
+  std::vector<std::string> keys() const;
   /// The tables in this one, in the order of the file.
   std::vector<std::pair<std::string, TableReader>> all_tables();
 

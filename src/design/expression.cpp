@@ -1,0 +1,169 @@
+#include "zwidth/design/expression.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <muParser.h>
+#include <optional>
+
+#include "zwidth/description/problem.h"
+#include "zwidth/description/units.h"
+
+namespace zwidth {
+namespace {
+
+constexpr const char* kNameCharacters = "0123456789_.[]abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+
+bool digit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool name_start(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+bool name_character(char c) {
+  return std::string_view(kNameCharacters).find(c) != std::string_view::npos;
+}
+
+// Where the number that starts at `from` ends.
+std::size_t number_end(std::string_view text, std::size_t from) {
+  std::size_t end = from;
+  const auto digits = [&] {
+    while (end < text.size() && digit(text[end])) ++end;
+  };
+  digits();
+  if (end < text.size() && text[end] == '.') {
+    ++end;
+    digits();
+  }
+  if (end < text.size() && (text[end] == 'e' || text[end] == 'E')) {
+    std::size_t power = end + 1;
+    if (power < text.size() && (text[power] == '+' || text[power] == '-')) ++power;
+    if (power < text.size() && digit(text[power])) {
+      end = power;
+      digits();
+    }
+  }
+  return end;
+}
+
+// Every number with a unit as the SI number in brackets. Puts what is wrong in `problem`.
+std::string without_units(std::string_view text, ParsedExpression& problem) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size();) {
+    if (name_start(text[i])) {
+      const std::size_t start = i;
+      while (i < text.size() && name_character(text[i])) ++i;
+      result += text.substr(start, i - start);
+      continue;
+    }
+    if (!digit(text[i]) && !(text[i] == '.' && i + 1 < text.size() && digit(text[i + 1]))) {
+      result += text[i++];
+      continue;
+    }
+    const std::size_t end = number_end(text, i);
+    const std::string_view number = text.substr(i, end - i);
+    i = end;
+    std::size_t unit = end;
+    while (unit < text.size() && text[unit] == ' ') ++unit;
+    std::size_t unit_end = unit;
+    while (unit_end < text.size() && std::isalpha(static_cast<unsigned char>(text[unit_end])) != 0) ++unit_end;
+    if (unit_end == unit) {
+      result += number;
+      continue;
+    }
+    const std::string with_unit = fmt::format("{} {}", number, text.substr(unit, unit_end - unit));
+    const std::optional<AnyQuantity> quantity = parse_any_quantity(with_unit);
+    if (!quantity) {
+      problem.rule = fmt::format("has '{}', which is no unit", text.substr(unit, unit_end - unit));
+      problem.advice = "write a product with *, units as in \"60 mm\"";
+      return {};
+    }
+    result += fmt::format("({})", quantity->value);
+    i = unit_end;
+  }
+  return result;
+}
+
+double clamp(double value, double low, double high) {
+  return std::fmin(std::fmax(value, low), high);
+}
+double sign(double value) {
+  return static_cast<double>(value > 0.0) - static_cast<double>(value < 0.0);
+}
+
+const std::vector<std::string>& function_names() {
+  static const std::vector<std::string> names = {
+      "sin", "cos",   "tan", "asin", "acos", "atan", "atan2", "sinh",  "cosh",  "tanh", "sqrt", "exp",
+      "log", "log10", "abs", "sign", "min",  "max",  "hypot", "clamp", "floor", "ceil", "round"};
+  return names;
+}
+
+void set_up(mu::Parser& parser) {
+  parser.ResetLocale();
+  parser.DefineNameChars(kNameCharacters);
+  parser.ClearConst();
+  parser.DefineConst("pi", 3.14159265358979323846);
+  parser.DefineFun("log", static_cast<double (*)(double)>(std::log));
+  parser.DefineFun("floor", static_cast<double (*)(double)>(std::floor));
+  parser.DefineFun("ceil", static_cast<double (*)(double)>(std::ceil));
+  parser.DefineFun("round", static_cast<double (*)(double)>(std::round));
+  parser.DefineFun("sign", sign);
+  parser.DefineFun("hypot", static_cast<double (*)(double, double)>(std::hypot));
+  parser.DefineFun("clamp", clamp);
+}
+
+}  // namespace
+
+ParsedExpression parse_expression(std::string_view text) {
+  ParsedExpression parsed;
+  const std::string plain = without_units(text, parsed);
+  if (!parsed) return parsed;
+  try {
+    mu::Parser parser;
+    set_up(parser);
+    parser.SetExpr(plain);
+    for (const auto& [name, at] : parser.GetUsedVar()) parsed.names.push_back(name);
+    // Only with all names known does the parser look at the whole of it.
+    std::vector<double> values(parsed.names.size(), 1.0);
+    for (std::size_t i = 0; i < values.size(); ++i) parser.DefineVar(parsed.names[i], &values[i]);
+    parser.Eval();
+  } catch (const mu::ParserError& error) {
+    parsed.names.clear();
+    const std::string token = error.GetToken();
+    std::string message = error.GetMsg();
+    while (!message.empty() && (message.back() == '.' || message.back() == ' ')) message.pop_back();
+    if (!message.empty()) message[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(message[0])));
+    parsed.rule = fmt::format("is no expression: {}", message);
+    const bool is_name = !token.empty() && name_start(token.front());
+    parsed.advice =
+        is_name ? suggest(token, function_names()) : "see docs/study_file.md for what may be written";
+  }
+  return parsed;
+}
+
+struct Expression::Parser {
+  mu::Parser parser;
+};
+
+Expression::Expression(std::string_view text, const std::function<double*(const std::string& name)>& number)
+    : parser_(std::make_unique<Parser>()) {
+  ParsedExpression parsed = parse_expression(text);
+  mu::Parser& parser = parser_->parser;
+  set_up(parser);
+  parser.SetExpr(without_units(text, parsed));
+  for (const std::string& name : parsed.names) parser.DefineVar(name, number(name));
+  parser.Eval();  // compiles it
+}
+
+Expression::Expression(Expression&&) noexcept = default;
+Expression& Expression::operator=(Expression&&) noexcept = default;
+Expression::~Expression() = default;
+
+double Expression::operator()() const {
+  const double value = parser_->parser.Eval();
+  return std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace zwidth

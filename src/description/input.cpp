@@ -260,7 +260,8 @@ Input::Input(std::string_view text, std::string_view file) : file_(file) {
 
 void Input::set(const std::string& override_text) {
   const std::size_t equals = override_text.find('=');
-  const std::string key = override_text.substr(0, equals);
+  std::string key = override_text.substr(0, equals);
+  while (equals != std::string::npos && key.ends_with(' ')) key.pop_back();
   const std::vector<std::string> parts = split_key(key);
   const std::string label = "--set " + shortened(parts.empty() ? override_text : key);
   const auto wrong = [&](std::string rule, std::string advice) {

@@ -48,14 +48,40 @@ std::size_t number_end(std::string_view text, std::size_t from) {
   return end;
 }
 
-// Every number with a unit as the SI number in brackets. Puts what is wrong in `problem`.
+const std::vector<std::string>& function_names() {
+  static const std::vector<std::string> names = {
+      "sin", "cos",   "tan", "asin", "acos", "atan", "atan2", "sinh",  "cosh",  "tanh", "sqrt", "exp",
+      "log", "log10", "abs", "sign", "min",  "max",  "hypot", "clamp", "floor", "ceil", "round"};
+  return names;
+}
+
+// The text with every number that has a unit as the SI number in brackets. Puts what is wrong in `problem`.
 std::string without_units(std::string_view text, ParsedExpression& problem) {
   std::string result;
   for (std::size_t i = 0; i < text.size();) {
     if (name_start(text[i])) {
       const std::size_t start = i;
       while (i < text.size() && name_character(text[i])) ++i;
-      result += text.substr(start, i - start);
+      const std::string name(text.substr(start, i - start));
+      const std::size_t next = text.find_first_not_of(' ', i);
+      const bool called = next != std::string_view::npos && text[next] == '(';
+      if (called && std::ranges::find(function_names(), name) == function_names().end()) {
+        problem.rule = fmt::format("calls '{}', which is no function", name);
+        problem.advice = suggest(name, function_names());
+        return {};
+      }
+      result += name;
+      continue;
+    }
+    if (text[i] == '=') {
+      const bool compares = i + 1 < text.size() && text[i + 1] == '=';
+      if (!compares && (i == 0 || std::string_view("<>!").find(text[i - 1]) == std::string_view::npos)) {
+        problem.rule = "assigns with =";
+        problem.advice = "compare with ==, or add a [[derived]] value";
+        return {};
+      }
+      result += compares ? "==" : "=";
+      i += compares ? 2 : 1;
       continue;
     }
     if (!digit(text[i]) && !(text[i] == '.' && i + 1 < text.size() && digit(text[i + 1]))) {
@@ -93,13 +119,6 @@ double sign(double value) {
   return static_cast<double>(value > 0.0) - static_cast<double>(value < 0.0);
 }
 
-const std::vector<std::string>& function_names() {
-  static const std::vector<std::string> names = {
-      "sin", "cos",   "tan", "asin", "acos", "atan", "atan2", "sinh",  "cosh",  "tanh", "sqrt", "exp",
-      "log", "log10", "abs", "sign", "min",  "max",  "hypot", "clamp", "floor", "ceil", "round"};
-  return names;
-}
-
 void set_up(mu::Parser& parser) {
   parser.ResetLocale();
   parser.DefineNameChars(kNameCharacters);
@@ -131,14 +150,11 @@ ParsedExpression parse_expression(std::string_view text) {
     parser.Eval();
   } catch (const mu::ParserError& error) {
     parsed.names.clear();
-    const std::string token = error.GetToken();
     std::string message = error.GetMsg();
     while (!message.empty() && (message.back() == '.' || message.back() == ' ')) message.pop_back();
     if (!message.empty()) message[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(message[0])));
     parsed.rule = fmt::format("is no expression: {}", message);
-    const bool is_name = !token.empty() && name_start(token.front());
-    parsed.advice =
-        is_name ? suggest(token, function_names()) : "see docs/study_file.md for what may be written";
+    parsed.advice = "see docs/study_file.md for what may be written";
   }
   return parsed;
 }

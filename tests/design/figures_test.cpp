@@ -1,0 +1,126 @@
+#include "zwidth/design/figures.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <set>
+
+#include "zwidth/analysis/force.h"
+#include "zwidth/analysis/workspace.h"
+#include "zwidth/description/read.h"
+#include "zwidth/mechanism/dynamics.h"
+#include "zwidth/mechanism/r_cube_stiffness.h"
+
+namespace zwidth {
+namespace {
+
+const Catalogue& catalogue() {
+  static const Catalogue loaded = Catalogue::load();
+  return loaded;
+}
+
+double at(const BuiltDevice& device, const ActiveVector& joints, std::string_view name,
+          const FigureOptions& options = {}) {
+  const Solution solution = solve_forward(device.mechanism(), joints);
+  EXPECT_TRUE(solution) << name;
+  PostureFigures posture(device, *solution.posture);
+  return figure_value(*find_figure(name), posture, options);
+}
+
+TEST(Figures, HaveNamesOfTheirOwn) {
+  std::set<std::string_view> names;
+  for (const FigureDefinition& figure : figure_definitions()) {
+    EXPECT_TRUE(names.insert(figure.name).second) << figure.name;
+    EXPECT_FALSE(figure.unit.empty() || figure.meaning.empty()) << figure.name;
+    EXPECT_NE(figure.of == nullptr, figure.of_device == nullptr) << figure.name;
+    EXPECT_EQ(find_figure(figure.name), &figure);
+  }
+  EXPECT_EQ(find_figure("no_such"), nullptr);
+}
+
+// Of every built-in device in a posture off its middle: a number or undefined, never infinite.
+TEST(Figures, AreNumbersOrUndefined) {
+  for (const BuiltinFile& file : catalogue().devices()) {
+    const Description description = read_description(file.name, {}, catalogue());
+    const auto device = BuiltDevice::try_make(description, true);
+    ASSERT_TRUE(device) << file.name;
+    ActiveVector joints(device->mechanism().active_count());
+    for (int i = 0; i < joints.size(); ++i) {
+      const Interval range = device->mechanism().active_range(i);
+      joints[i] = device->mechanism().home_guess()[device->mechanism().active_joint(i)] + 0.03 * range.width();
+      if (!range.contains(joints[i])) joints[i] -= 0.06 * range.width();
+    }
+    FigureOptions options;
+    options.load << 1.0, 2.0, 3.0, 0.0, 0.0, 0.0;
+    int defined = 0;
+    for (const FigureDefinition& figure : figure_definitions()) {
+      if (!figure.of_posture) continue;
+      const double value = at(*device, joints, figure.name, options);
+      EXPECT_FALSE(std::isinf(value)) << file.name << " " << figure.name;
+      defined += std::isnan(value) ? 0 : 1;
+    }
+    EXPECT_GE(defined, 8) << file.name;
+  }
+}
+
+TEST(Figures, OfThePostureAreThoseOfTheLibrary) {
+  const Description description = read_description("delta", {}, catalogue());
+  const auto device = BuiltDevice::try_make(description, true);
+  ASSERT_TRUE(device);
+  const ActiveVector joints = Vector3(0.2, 0.5, 0.8);
+  const Solution solution = solve_forward(device->mechanism(), joints);
+  const Jacobian J = jacobian(*solution.posture);
+  EXPECT_DOUBLE_EQ(at(*device, joints, "condition_number"), dexterity(J).condition_number);
+  EXPECT_DOUBLE_EQ(at(*device, joints, "inverse_condition") * at(*device, joints, "condition_number"), 1.0);
+  const double torque = device->drives()[0]->continuous_torque().usable;
+  EXPECT_DOUBLE_EQ(figure_value(*find_figure("continuous_torque"), *device, {}), torque);
+  EXPECT_NEAR(at(*device, joints, "force_min"),
+              force_polytope(J, ActiveVector(Vector3::Constant(torque))).weakest, 1e-12);
+  const ToolMatrix mass = cartesian_mass(J, mass_matrix(*solution.posture));
+  EXPECT_NEAR(at(*device, joints, "apparent_mass_determinant"), mass.determinant(), 1e-12);
+  EXPECT_LT(at(*device, joints, "link_mass_max"), at(*device, joints, "apparent_mass_max"));
+  FigureOptions push;
+  push.load.head<3>() << 2.0, -1.0, 3.0;
+  const ActiveVector hold = gravity_torques(*solution.posture) - J.transpose() * push.load.head<3>();
+  EXPECT_NEAR(at(*device, joints, "load_torque", push), hold.cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_NEAR(at(*device, joints, "load_utilisation", push), hold.cwiseAbs().maxCoeff() / torque, 1e-9);
+}
+
+TEST(Figures, DeflectionGrowsWithTheLoad) {
+  const Description description = read_description("r-cube", {}, catalogue());
+  const auto device = BuiltDevice::try_make(description, false);
+  ASSERT_TRUE(device);
+  const ActiveVector joints = Vector3::Constant(0.5);
+  FigureOptions one, two;
+  one.load[0] = 10.0;
+  two.load[0] = 20.0;
+  const double small = at(*device, joints, "deflection", one), large = at(*device, joints, "deflection", two);
+  EXPECT_GT(small, 0.0);
+  EXPECT_NEAR(large / small, 2.0, 1e-12);
+  EXPECT_GT(at(*device, joints, "natural_frequency"), 10.0);
+  EXPECT_LE(at(*device, joints, "stiffness_min"), at(*device, joints, "stiffness_max"));
+}
+
+TEST(Figures, OfTheDeviceAreThoseOfTheSheet) {
+  const Description description = read_description("five-bar", {}, catalogue());
+  const auto device = BuiltDevice::try_make(description, true);
+  ASSERT_TRUE(device);
+  EXPECT_NEAR(figure_value(*find_figure("workspace_volume"), *device, {}),
+              workspace_volume(device->mechanism()).value, 1e-12);
+  EXPECT_NEAR(figure_value(*find_figure("inscribed_radius"), *device, {}),
+              inscribed_shapes(device->mechanism()).circle().size, 1e-12);
+  EXPECT_DOUBLE_EQ(figure_value(*find_figure("moving_mass"), *device, {}), moving_mass(device->mechanism()));
+  EXPECT_TRUE(std::isnan(figure_value(*find_figure("cylinder_peak_force"), *device, {})));
+}
+
+TEST(BuiltDevice, RefusesWhatBreaksARule) {
+  Description description = read_description("r-cube", {}, catalogue());
+  EXPECT_TRUE(BuiltDevice::try_make(description, true));
+  std::get<RCubeDescription>(description.mechanism).outer_link = -0.1;
+  EXPECT_FALSE(BuiltDevice::try_make(description, false));
+  description = read_description("r-cube", {}, catalogue());
+  std::get<TubeDescription>(*description.bodies[1].beam).inner_diameter = 0.03;
+  EXPECT_FALSE(BuiltDevice::try_make(description, false));
+}
+
+}  // namespace
+}  // namespace zwidth

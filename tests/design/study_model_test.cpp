@@ -1,0 +1,290 @@
+#include "zwidth/design/study_model.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+#include "zwidth/actuation/arm_cylinder.h"
+#include "zwidth/analysis/five_bar_search.h"
+#include "zwidth/analysis/r_cube_synthesis.h"
+#include "zwidth/description/read.h"
+#include "zwidth/description/validate.h"
+
+namespace zwidth {
+namespace {
+
+const Catalogue& catalogue() {
+  static const Catalogue loaded = Catalogue::load();
+  return loaded;
+}
+
+struct Loaded {
+  Study study;
+  Description device;
+};
+
+Loaded load(const Study& study) {
+  return {study, read_description(study.device, study.overrides, catalogue())};
+}
+
+StudyCheck check() {
+  return [](const Study& study) { return study_problems(study, load(study).device, catalogue()); };
+}
+
+// A small study of the five-bar, with what a test has to say.
+std::string small(const std::string& more) {
+  return "[study]\nname = \"small\"\ndevice = \"five-bar\"\n" + more;
+}
+constexpr const char* kCrank =
+    "[[variable]]\nname = \"a1\"\nkey = \"mechanism.crank\"\nmin = \"9 cm\"\nmax = \"12 cm\"\n";
+constexpr const char* kSmallest = "[[objective]]\nname = \"length\"\nminimise = \"a1\"\n";
+
+std::string complaint(const std::string& text) {
+  try {
+    parse_study(text, "study.toml", {}, check());
+  } catch (const DescriptionError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+StudyModel small_model(const std::string& more) {
+  const Loaded loaded = load(parse_study(small(more), "study.toml", {}, check()));
+  return StudyModel(loaded.study, loaded.device, catalogue());
+}
+
+TEST(StudyModel, EveryStudyThatComesWithZwidthMakesSense) {
+  ASSERT_GE(catalogue().studies().size(), 6U);
+  for (const BuiltinFile& file : catalogue().studies()) {
+    EXPECT_NO_THROW(read_study(file.name, {}, catalogue(), check())) << file.name;
+  }
+}
+
+// Two routes: the study's expressions and general figures, against the formulas in code.
+TEST(StudyModel, RCubeStudyAgreesWithItsFormulas) {
+  const Loaded loaded = load(read_study("r-cube-kinematics", {}, catalogue(), check()));
+  const StudyModel model(loaded.study, loaded.device, catalogue());
+  StudyEvaluator evaluator(model);
+  const Material steel = std::get<Material>(std::get<TubeDescription>(*loaded.device.bodies[0].beam).wall);
+  const double E = steel.elastic_modulus, G = E / (2.0 * (1.0 + steel.poisson_ratio));
+  const RCubeLinkChoice links{
+      .section = *tube_section(0.020, 0.010), .elastic_modulus = E, .shear_modulus = G, .density = 2000.0};
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> angle(0.3, 0.8), length(0.06, 0.25);
+  int feasible = 0, infeasible = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const RCubeDesign design{
+        .max_angle = angle(random), .inner_link = length(random), .outer_link = length(random)};
+    const std::vector<double> row = {design.max_angle, design.inner_link, design.outer_link};
+    std::vector<double> outcome(model.search_problem().outcome_size());
+    evaluator.evaluate(row, outcome);
+    const auto constraints = r_cube_constraints(design);
+    ASSERT_TRUE(constraints);
+    const double expected[] = {constraints->far_low,     constraints->near,  constraints->raised_far,
+                               constraints->raised_near, constraints->elbow, constraints->raised_elbow};
+    for (int c = 0; c < 6; ++c) {
+      EXPECT_NEAR(outcome[static_cast<std::size_t>(4 + c)], std::max(0.0, expected[c]),
+                  1e-12 * (1.0 + std::abs(expected[c])))
+          << c;
+    }
+    if (constraints->worst() > 0.0) {
+      EXPECT_TRUE(std::isnan(outcome[0]) && std::isnan(outcome[1]) && std::isnan(outcome[2]));
+      ++infeasible;
+      continue;
+    }
+    const auto objectives = r_cube_objectives(design, links);
+    if (!objectives) continue;
+    EXPECT_EQ(outcome[3], 0.0);
+    EXPECT_NEAR(outcome[0] / objectives->closeness, 1.0, 1e-12);
+    EXPECT_NEAR(outcome[1] / objectives->inertia, 1.0, 1e-9);
+    EXPECT_NEAR(outcome[2] / objectives->compliance, 1.0, 1e-9);
+    ++feasible;
+  }
+  EXPECT_GT(feasible, 20);
+  EXPECT_GT(infeasible, 100);
+}
+
+TEST(StudyModel, FiveBarGridAgreesWithItsSearch) {
+  const Loaded loaded = load(read_study("five-bar-grid", {}, catalogue(), check()));
+  const StudyModel model(loaded.study, loaded.device, catalogue());
+  StudyEvaluator evaluator(model);
+  const SearchProblem problem = model.search_problem();
+  EXPECT_EQ(problem.variables[0].max, 3.0);
+  EXPECT_EQ(problem.variables[1].max, 4.0);
+  EXPECT_EQ(problem.variables[2].max, 2.0);
+  const FiveBarSearchResult search = search_five_bars({.crank = {0.09, 0.12, 0.01},
+                                                       .coupler = {0.11, 0.15, 0.01},
+                                                       .base = {0.03, 0.05, 0.01},
+                                                       .mode = {1, -1}});
+  ASSERT_EQ(search.designs.size(), 60U);
+  for (const FiveBarScore& one : search.designs) {
+    const std::vector<double> row = {std::round((one.lengths[0] - 0.09) / 0.01),
+                                     std::round((one.lengths[1] - 0.11) / 0.01),
+                                     std::round((one.lengths[2] - 0.03) / 0.01)};
+    std::vector<double> outcome(problem.outcome_size());
+    evaluator.evaluate(row, outcome);
+    EXPECT_EQ(outcome[0], static_cast<double>(one.bad));
+    EXPECT_NEAR(-outcome[1], one.inscribed_radius, 1e-15);
+  }
+}
+
+TEST(StudyModel, CylinderStudyAgreesWithTheSynthesis) {
+  const Loaded loaded = load(read_study("pneumatic-arm-cylinder", {}, catalogue(), check()));
+  const StudyModel model(loaded.study, loaded.device, catalogue());
+  StudyEvaluator evaluator(model);
+  const CylinderTravel travel{.min_length = 0.075, .max_length = 0.0875, .half_range = M_PI / 6.0};
+  for (const auto& [h, l2] : {std::pair{0.01, 0.08}, {0.005, 0.07}, {0.0125, 0.085}}) {
+    const auto design = design_three(travel, h, l2);
+    ASSERT_TRUE(design);
+    const auto peak = ArmCylinder(*design).peak_required_force(8.75, 0.11, {-M_PI / 6.0, M_PI / 6.0});
+    const DesignSheet sheet = evaluator.sheet(std::vector{h / 0.00025, (l2 - 0.06) / 0.00025});
+    if (!peak) {
+      EXPECT_FALSE(sheet.feasible);
+      continue;
+    }
+    EXPECT_TRUE(sheet.feasible);
+    EXPECT_NEAR(sheet.objectives[0], peak->force, 1e-9 * peak->force);
+  }
+}
+
+TEST(StudyModel, DesignsBecomeDescriptions) {
+  const StudyModel model = small_model(
+      std::string(kCrank) + "[[derived]]\nkey = \"mechanism.coupler\"\nvalue = \"2*a1\"\n" + kSmallest);
+  StudyEvaluator evaluator(model);
+  const Description design = evaluator.description(std::vector{0.11});
+  const auto& five_bar = std::get<FiveBarDescription>(design.mechanism);
+  EXPECT_EQ(five_bar.crank, 0.11);
+  EXPECT_EQ(five_bar.coupler, 0.22);
+  EXPECT_TRUE(validate(design).empty());
+  EXPECT_EQ(model.device_design(), std::vector{0.10});
+}
+
+TEST(StudyModel, PartsAreChosenByName) {
+  const StudyModel model = small_model(
+      "[[variable]]\nname = \"motor\"\nkey = \"drive.motor\"\n"
+      "parts = [\"maxon-ec-max-40-70w-48v\", \"maxon-ec-4pole-30-100w-48v\"]\n"
+      "[[measure]]\nname = \"torque\"\nfigure = \"continuous_torque\"\n"
+      "[[objective]]\nname = \"torque\"\nmaximise = \"torque\"\n");
+  StudyEvaluator evaluator(model);
+  std::vector<double> first(2), second(2), again(2);
+  evaluator.evaluate(std::vector{0.0}, first);
+  evaluator.evaluate(std::vector{1.0}, second);
+  evaluator.evaluate(std::vector{0.0}, again);
+  EXPECT_NE(first[0], second[0]);
+  EXPECT_EQ(first, again);
+  EXPECT_EQ(evaluator.description(std::vector{1.0}).drives[0].motor.info.name, "maxon-ec-4pole-30-100w-48v");
+}
+
+TEST(StudyModel, DesignsThatCannotBeAreNotEvaluated) {
+  // The links do not reach each other: r3 >= r1 + r2.
+  const StudyModel model = small_model(
+      "[[variable]]\nkey = \"mechanism.half_base\"\nmin = \"2 cm\"\nmax = \"60 cm\"\n"
+      "[[measure]]\nname = \"k\"\nfigure = \"condition_number\"\nposition = [0, \"18 cm\", 0]\n"
+      "[[objective]]\nname = \"k\"\nminimise = \"k\"\n");
+  StudyEvaluator evaluator(model);
+  std::vector<double> good(2), bad(2);
+  evaluator.evaluate(std::vector{0.03}, good);
+  evaluator.evaluate(std::vector{0.5}, bad);
+  EXPECT_EQ(good[1], 0.0);
+  EXPECT_GT(good[0], 1.0);
+  EXPECT_GT(bad[1], 0.0);
+  EXPECT_TRUE(std::isnan(bad[0]));
+}
+
+TEST(StudyModel, TolerancesMoveAndLeaveNoTrace) {
+  const StudyModel model =
+      small_model(std::string(kCrank) +
+                  "[[measure]]\nname = \"k\"\nfigure = \"condition_number\"\nposition = [\"5 cm\", "
+                  "\"14 cm\", 0]\n[[objective]]\nname = \"k\"\nminimise = \"k\"\n"
+                  "[[tolerance]]\nkey = \"mechanism.coupler\"\nhalf_width = \"1 mm\"\n");
+  StudyEvaluator evaluator(model);
+  const double before = evaluator.sheet(std::vector{0.1}).objectives[0];
+  const double high = evaluator.sheet(std::vector{0.1}, std::vector{1.0}).objectives[0];
+  const double low = evaluator.sheet(std::vector{0.1}, std::vector{-1.0}).objectives[0];
+  EXPECT_NE(high, before);
+  EXPECT_NEAR(0.5 * (high + low), before, 0.01 * std::abs(high - low));
+  EXPECT_EQ(evaluator.sheet(std::vector{0.1}).objectives[0], before);
+}
+
+TEST(StudyModel, BoxesHaveToBeReachedAllOver) {
+  const auto share = [](const char* size) {
+    const StudyModel model =
+        small_model(std::string(kCrank) +
+                    "[[measure]]\nname = \"share\"\nfigure = \"reached_share\"\nover = \"box\"\n"
+                    "position = [0, \"18 cm\", 0]\nsize = [" +
+                    size + ", " + size +
+                    ", 0]\npoints = 9\nstatistic = \"mean\"\n"
+                    "[[measure]]\nname = \"k\"\nfigure = \"condition_number\"\nover = \"box\"\n"
+                    "position = [0, \"18 cm\", 0]\nsize = [" +
+                    size + ", " + size + ", 0]\npoints = 9\nstatistic = \"max\"\n" + kSmallest);
+    StudyEvaluator evaluator(model);
+    const DesignSheet sheet = evaluator.sheet(std::vector{0.1});
+    return std::pair{sheet.derived[0].value, sheet.derived[1].value};
+  };
+  const auto [all, worst] = share("0.05");
+  EXPECT_EQ(all, 1.0);
+  EXPECT_GT(worst, 1.0);
+  const auto [some, undefined] = share("0.4");
+  EXPECT_GT(some, 0.0);
+  EXPECT_LT(some, 1.0);
+  EXPECT_TRUE(std::isnan(undefined));
+}
+
+TEST(StudyProblems, SaysWhatIsUnknownAndWhatIsNear) {
+  EXPECT_NE(
+      complaint(small(std::string("[[variable]]\nkey = \"mechanism.cranck\"\nmin = 1\nmax = 2\n") + kSmallest))
+          .find("mechanism.crank"),
+      std::string::npos);
+  EXPECT_NE(complaint(small(std::string(kCrank) +
+                            "[[measure]]\nname = \"k\"\nfigure = \"condition_numbr\"\nat = "
+                            "\"home\"\n" +
+                            kSmallest))
+                .find("condition_number"),
+            std::string::npos);
+  EXPECT_NE(
+      complaint(small(std::string(kCrank) + "[[objective]]\nname = \"o\"\nminimise = \"a2\"\n")).find("a1"),
+      std::string::npos);
+}
+
+TEST(StudyProblems, RefusesWhatMakesNoSense) {
+  const std::string good = std::string(kCrank) + kSmallest;
+  EXPECT_EQ(complaint(small(good)), "");
+  const std::pair<std::string, std::string> cases[] = {
+      {"", "is missing"},
+      {"[[variable]]\nkey = \"mechanism.crank\"\nmin = \"12 cm\"\nmax = \"9 cm\"\n" + std::string(kSmallest),
+       "more than min"},
+      {"[[variable]]\nname = \"a1\"\nkey = \"mechanism.crank\"\nmin = \"12 deg\"\nmax = \"90 deg\"\n" +
+           std::string(kSmallest),
+       "is an angle"},
+      {good + kCrank, "used twice"},
+      {good + "[[derived]]\nkey = \"mechanism.crank\"\nvalue = 1\n", "second time"},
+      {good + "[[derived]]\nname = \"p\"\nvalue = \"q\"\n[[derived]]\nname = \"q\"\nvalue = \"p + 1\"\n",
+       "follows from itself"},
+      {good + "[[derived]]\nname = \"p\"\nvalue = \"1 +\"\n", "is no expression"},
+      {good + "[[measure]]\nname = \"k\"\nfigure = \"condition_number\"\n", "figure of a posture"},
+      {good + "[[measure]]\nname = \"k\"\nfigure = \"moving_mass\"\nat = \"home\"\n", "device as a whole"},
+      {good + "[[measure]]\nname = \"k\"\nfigure = \"condition_number\"\nat = \"hme\"\n", "no posture"},
+      {good + "[[measure]]\nname = \"k\"\nfigure = \"condition_number\"\njoints = [1]\n", "must be 2"},
+      {good + "[[measure]]\nname = \"k\"\nfigure = \"deflection\"\nat = \"home\"\n", "under a load"},
+      {good + "[[measure]]\nname = \"k\"\nfigure = \"moving_mass\"\noptions = { x = 1 }\n", "no option"},
+      {good + "[[constraint]]\nname = \"c\"\nvalue = \"a1\"\n", "no limit"},
+      {good + "[choice]\nweights = { lenght = 1 }\n", "no objective"},
+      {good + "[search]\nalgorithm = \"nsga3\"\n", "nsga2"},
+      {good + "[search]\npopulation = 2.5\n", "whole number"},
+      {good + "[[tolerance]]\nkey = \"mechanism.crank\"\n", "unknown amount"},
+      {"[[variable]]\nname = \"m\"\nkey = \"drive.motor\"\nparts = [\"maxon-ec-max-40-70w-48v\", \"x\"]\n"
+       "[[objective]]\nname = \"o\"\nminimise = \"m\"\n",
+       "no motor"},
+      {good + "[[measure]]\nname = \"k\"\nfigure = \"moving_mass\"\n"
+              "[[derived]]\nkey = \"mechanism.coupler\"\nvalue = \"k\"\n",
+       "only when the design stands"},
+  };
+  for (const auto& [text, rule] : cases) {
+    const std::string said = complaint(small(text));
+    EXPECT_NE(said.find(rule), std::string::npos) << text << "\n" << said;
+    EXPECT_NE(said.find("study.toml:"), std::string::npos) << said;
+  }
+}
+
+}  // namespace
+}  // namespace zwidth

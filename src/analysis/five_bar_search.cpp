@@ -53,6 +53,7 @@ PolarPoints polar_points(const PolarSampling& sampling, double reach) {
       std::max(reach, 0.0) / sampling.radius_step * (sampling.angle_span / sampling.angle_step + 1.0);
   if (!(most <= kMostPoints)) throw std::length_error("a polar sampling has more than 2 10^7 points");
   PolarPoints points;
+  points.radius_step = sampling.radius_step;
   points.per_circle = angle_count(sampling);
   std::vector<double> cosine, sine;
   for (std::int64_t j = 0; j < points.per_circle; ++j) {
@@ -68,6 +69,11 @@ PolarPoints polar_points(const PolarSampling& sampling, double reach) {
     }
   }
   return points;
+}
+
+std::size_t PolarPoints::within(double reach) const {
+  const auto circles = static_cast<std::int64_t>(std::floor(reach / radius_step + kStepSlack));
+  return std::min(size(), static_cast<std::size_t>(std::max<std::int64_t>(circles, 0) * per_circle));
 }
 
 const char* symbol(ConditionClass condition_class) {
@@ -139,6 +145,14 @@ std::vector<std::pair<double, std::int64_t>> FiveBarSearchResult::fewest_by_base
   return {fewest.begin(), fewest.end()};
 }
 
+FiveBarBatch::Count badly_conditioned(const FiveBarGeometry& geometry, WorkingMode mode,
+                                      const PolarPoints& points, double limit) {
+  if (!can_assemble(geometry)) return {};
+  const std::size_t used = points.within(geometry.crank + geometry.coupler);
+  return FiveBarBatch(geometry, mode)
+      .count_above(std::span(points.x).first(used), std::span(points.y).first(used), limit);
+}
+
 FiveBarSearchResult search_five_bars(const FiveBarSearch& search, const Effort& effort) {
   const std::vector<double> a1 = values_of(search.crank), a2 = values_of(search.coupler),
                             a3 = values_of(search.base);
@@ -152,17 +166,13 @@ FiveBarSearchResult search_five_bars(const FiveBarSearch& search, const Effort& 
   std::vector<FiveBarScore> scores(tasks * a3.size());
   const bool complete = internal::for_each_index(tasks, effort, [&](std::size_t task) {
     const double crank = a1[task / a2.size()], coupler = a2[task % a2.size()];
-    const auto used = static_cast<std::size_t>(
-        std::max<std::int64_t>(circle_count(search.sampling, crank + coupler), 0) * points.per_circle);
-    const std::span<const double> x = std::span(points.x).first(used), y = std::span(points.y).first(used);
     for (std::size_t b = 0; b < a3.size(); ++b) {
       FiveBarScore& score = scores[task * a3.size() + b];
       score.lengths = {crank, coupler, a3[b]};
       score.geometry = {
           .crank = crank, .coupler = coupler, .half_base = search.base_is_half ? a3[b] : 0.5 * a3[b]};
-      if (!can_assemble(score.geometry)) continue;
-      const FiveBarBatch::Count found =
-          FiveBarBatch(score.geometry, search.mode).count_above(x, y, search.limit);
+      const FiveBarBatch::Count found = badly_conditioned(score.geometry, search.mode, points, search.limit);
+      if (found.reachable == 0) continue;
       score.reachable = found.reachable;
       score.singular = found.singular;
       score.bad = found.above + (search.count_singular ? found.singular : 0);
@@ -175,9 +185,8 @@ FiveBarSearchResult search_five_bars(const FiveBarSearch& search, const Effort& 
   result.complete = complete;
   for (const FiveBarScore& score : scores) {
     if (score.reachable == 0) continue;
-    result.points += std::max<std::int64_t>(
-                         circle_count(search.sampling, score.geometry.crank + score.geometry.coupler), 0) *
-                     points.per_circle;
+    result.points +=
+        static_cast<std::int64_t>(points.within(score.geometry.crank + score.geometry.coupler));
     result.designs.push_back(score);
   }
   for (std::size_t d = 0; d < result.designs.size(); ++d) {

@@ -8,6 +8,7 @@
 
 #include "zwidth/analysis/dexterity.h"
 #include "zwidth/analysis/workspace.h"
+#include "zwidth/mechanism/batch_five_bar.h"
 #include "zwidth/mechanism/five_bar.h"
 
 /// The design search of Singh, Saha and Manivannan (section 5): of a grid of link lengths, the five-bar with
@@ -31,6 +32,9 @@ struct PolarSampling {
 struct PolarPoints {
   std::vector<double> x, y;  ///< [m]
   std::int64_t per_circle = 0;
+  double radius_step = 0.0;  ///< [m]
+  /// How many of them, the first ones, lie within `reach` [m].
+  std::size_t within(double reach) const;
   std::size_t size() const { return x.size(); }
 };
 /// Points up to `reach` [m]. Throws std::invalid_argument if a step is not positive and finite, or the span not
@@ -100,6 +104,11 @@ struct FiveBarSearchResult {
   /// The fewest bad points among the designs with each a3: (a3, count), by a3.
   std::vector<std::pair<double, std::int64_t>> fewest_by_base() const;
 };
+
+/// The reachable points within crank + coupler, how many are singular, and how many others have a condition
+/// number above `limit`. All zero for lengths that cannot be assembled.
+FiveBarBatch::Count badly_conditioned(const FiveBarGeometry& geometry, WorkingMode mode,
+                                      const PolarPoints& points, double limit);
 
 /// Looks at every design. The result does not depend on the number of threads. Throws as `polar_points`, and
 /// std::invalid_argument for ranges that are empty or have a step that is not positive, std::length_error for

@@ -17,6 +17,7 @@ std::string component(const std::string& key, std::size_t index) {
 class Walker {
  public:
   void walk(Description& description) {
+    note_sources(description);
     vector("device.gravity", description.gravity, Dimension::acceleration);
     std::visit([this](auto& mechanism) { walk(mechanism); }, description.mechanism);
     std::size_t index = 0;
@@ -29,6 +30,7 @@ class Walker {
     index = 0;
     for (LoadDescription& load : description.loads) {
       const std::string path = join_path("load", index++);
+      note_sources(load);
       vector(path + ".force", load.force, Dimension::force);
       vector(path + ".moment", load.moment, Dimension::torque);
     }
@@ -36,6 +38,7 @@ class Walker {
     index = 0;
     for (PostureDescription& posture : description.postures) {
       const std::string path = join_path("posture", index++) + ".joints";
+      note_sources(posture);
       for (std::size_t i = 0; i < posture.joints.size(); ++i) {
         number(component(path, i), posture.joints[i], dimensions[i]);
       }
@@ -47,7 +50,7 @@ class Walker {
 
  private:
   void number(std::string key, double& value, Dimension dimension) {
-    numbers.push_back({std::move(key), dimension, &value});
+    numbers.push_back({std::move(key), dimension, sources_, &value});
   }
   void vector(const std::string& key, Vector3& value, Dimension dimension) {
     for (std::size_t i = 0; i < 3; ++i) number(component(key, i), value[static_cast<int>(i)], dimension);
@@ -57,8 +60,21 @@ class Walker {
     number(component(key, 1), value.max, dimension);
   }
 
+  // Where the values of a table are said to come from.
+  template <class Owner>
+  void note_sources(Owner& owner) {
+    if constexpr (requires { owner.sources; }) {
+      sources_ = &owner.sources;
+    } else if constexpr (requires { owner.info.sources; }) {
+      sources_ = &owner.info.sources;
+    } else {
+      sources_ = nullptr;
+    }
+  }
+
   template <class Owner>
   void fields_of(Owner& owner, const std::string& path) {
+    note_sources(owner);
     for (const Field<Owner>& field : fields<Owner>()) {
       const std::string key = join_path(path, field.key);
       std::visit(
@@ -70,7 +86,7 @@ class Walker {
             } else if constexpr (std::is_same_v<Value, Vector3>) {
               vector(key, value, field.dimension);
             } else {
-              numbers.push_back({key, field.dimension, &value});
+              numbers.push_back({key, field.dimension, sources_, &value});
             }
           },
           field.member);
@@ -101,6 +117,7 @@ class Walker {
     }
   }
   void walk(LegsDescription& mechanism) {
+    sources_ = nullptr;
     std::size_t index = 0;
     for (LegDescription& leg : mechanism.legs) {
       const std::string path = join_path("leg", index++);
@@ -143,6 +160,7 @@ class Walker {
           *body.beam);
       return;
     }
+    note_sources(body);
     number(path + ".mass", body.mass, Dimension::mass);
     vector(path + ".centre", body.centre, Dimension::length);
     vector(path + ".pivot", body.pivot, Dimension::length);
@@ -182,6 +200,8 @@ class Walker {
     fields_of(drive, path);
     if (auto* arm = std::get_if<ArmCylinderDescription>(&drive.mount)) fields_of(*arm, path + ".mount");
   }
+
+  Sources* sources_ = nullptr;
 };
 
 // "drive.0.motor" as "drive[0].motor".
@@ -232,6 +252,12 @@ std::vector<Slot> meant(std::vector<Slot> slots, std::string_view key) {
 
 double NumberSlot::get() const noexcept {
   return std::visit([](const auto* value) { return static_cast<double>(*value); }, at);
+}
+
+void NumberSlot::set_source(const std::string& source) const {
+  if (sources == nullptr) return;
+  std::string field = key.substr(key.rfind('.') + 1);
+  (*sources)[field.substr(0, field.find('['))] = source;
 }
 
 void NumberSlot::set(double value) const noexcept {

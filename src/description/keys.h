@@ -18,11 +18,14 @@ namespace zwidth {
 struct NumberSlot {
   std::string key;
   Dimension dimension = Dimension::number;
+  Sources* sources = nullptr;      ///< of its table; null where a table has none
   std::variant<double*, int*> at;  ///< in the description that was searched; valid while its lists keep their
                                    ///< lengths and its variants their types
 
   bool whole() const { return std::holds_alternative<int*>(at); }
   double get() const noexcept;
+  /// Notes where the value comes from.
+  void set_source(const std::string& source) const;
   void set(double value) const noexcept;  ///< a whole number takes the nearest one
 };
 

@@ -86,8 +86,7 @@ class StudyReader {
 
   void read_search(TableReader& table) {
     StudySearch& search = study_.search;
-    if (const auto algorithm =
-            table.choice<SearchAlgorithm>("algorithm", search_algorithm_names(), Need::optional)) {
+    if (const auto algorithm = table.text("algorithm", Need::optional, "such as \"nsga2\"")) {
       search.algorithm = *algorithm;
     }
     if (const auto value = whole(table, "population", 4, kLargestBudget)) search.population = *value;
@@ -335,16 +334,6 @@ class StudyReader {
 
 }  // namespace
 
-const std::vector<std::pair<std::string, SearchAlgorithm>>& search_algorithm_names() {
-  static const std::vector<std::pair<std::string, SearchAlgorithm>> names = {
-      {"nsga2", SearchAlgorithm::nsga2}, {"nspso", SearchAlgorithm::nspso},
-      {"moead", SearchAlgorithm::moead}, {"maco", SearchAlgorithm::maco},
-      {"cmaes", SearchAlgorithm::cmaes}, {"de", SearchAlgorithm::de},
-      {"sade", SearchAlgorithm::sade},   {"self-adaptive", SearchAlgorithm::self_adaptive},
-      {"grid", SearchAlgorithm::grid}};
-  return names;
-}
-
 const std::vector<std::pair<std::string, ChoiceRule>>& choice_rule_names() {
   static const std::vector<std::pair<std::string, ChoiceRule>> names = {
       {"knee", ChoiceRule::knee}, {"weights", ChoiceRule::weights}, {"topsis", ChoiceRule::topsis}};
@@ -355,10 +344,6 @@ const std::vector<std::pair<std::string, StudyStatistic>>& study_statistic_names
   static const std::vector<std::pair<std::string, StudyStatistic>> names = {
       {"min", StudyStatistic::min}, {"mean", StudyStatistic::mean}, {"max", StudyStatistic::max}};
   return names;
-}
-
-std::string to_string(SearchAlgorithm algorithm) {
-  return search_algorithm_names()[static_cast<std::size_t>(algorithm)].first;
 }
 
 Study parse_study(std::string_view text, std::string_view file, const std::vector<std::string>& overrides,

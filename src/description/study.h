@@ -102,10 +102,8 @@ struct StudyTolerance {
   bool operator==(const StudyTolerance&) const = default;
 };
 
-enum class SearchAlgorithm { nsga2, nspso, moead, maco, cmaes, de, sade, self_adaptive, grid };
-
 struct StudySearch {
-  SearchAlgorithm algorithm = SearchAlgorithm::nsga2;
+  std::string algorithm = "nsga2";  ///< as `search_algorithms` (design/search.h) names them
   int population = 100;
   int generations = 200;
   std::uint64_t seed = 1;
@@ -143,10 +141,8 @@ struct Study {
 };
 
 /// As files call them.
-const std::vector<std::pair<std::string, SearchAlgorithm>>& search_algorithm_names();
 const std::vector<std::pair<std::string, ChoiceRule>>& choice_rule_names();
 const std::vector<std::pair<std::string, StudyStatistic>>& study_statistic_names();
-std::string to_string(SearchAlgorithm algorithm);
 
 /// Further rules; the problems have keys of the study file, and get their places here.
 using StudyCheck = std::function<std::vector<Problem>(const Study&)>;

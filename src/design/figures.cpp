@@ -314,21 +314,32 @@ constexpr FigureOption kPolar[] = {
 const FiveBarDescription* five_bar_of(const BuiltDevice& device) {
   return std::get_if<FiveBarDescription>(&device.description().mechanism);
 }
+// The points of the last sampling asked for on this thread: all designs of a study have the same.
+const PolarPoints& points_of(const PolarSampling& sampling, double reach) {
+  struct Kept {
+    PolarSampling sampling;
+    double reach = -1.0;
+    PolarPoints points;
+  };
+  thread_local Kept kept;
+  if (kept.sampling != sampling || reach > kept.reach) {
+    kept = {sampling, 1.5 * reach, polar_points(sampling, 1.5 * reach)};
+  }
+  return kept.points;
+}
+
 double badly_conditioned_points(const BuiltDevice& device, const FigureOptions& options) {
   const FiveBarDescription* five_bar = five_bar_of(device);
   if (five_bar == nullptr) return kUndefined;
-  const double limit = options.get("limit", kPolar[0].otherwise);
-  const LengthRange crank{five_bar->crank, five_bar->crank, 0.0},
-      coupler{five_bar->coupler, five_bar->coupler, 0.0}, base{five_bar->half_base, five_bar->half_base, 0.0};
-  const FiveBarSearch search{.crank = crank,
-                             .coupler = coupler,
-                             .base = base,
-                             .sampling = {.radius_step = options.get("radius_step", kPolar[1].otherwise),
-                                          .angle_step = options.get("angle_step", kPolar[2].otherwise)},
-                             .mode = {five_bar->left_mode, five_bar->right_mode},
-                             .limit = limit};
-  const FiveBarSearchResult result = search_five_bars(search, {.threads = 1});
-  return result.designs.empty() ? kUndefined : static_cast<double>(result.designs.front().bad);
+  const PolarSampling sampling{.radius_step = options.get("radius_step", kPolar[1].otherwise),
+                               .angle_step = options.get("angle_step", kPolar[2].otherwise)};
+  const bool valid = sampling.radius_step > 0.0 && sampling.angle_step > 0.0;
+  if (!valid) return kUndefined;
+  const FiveBarBatch::Count found = badly_conditioned(
+      {.crank = five_bar->crank, .coupler = five_bar->coupler, .half_base = five_bar->half_base},
+      {five_bar->left_mode, five_bar->right_mode}, points_of(sampling, five_bar->crank + five_bar->coupler),
+      options.get("limit", kPolar[0].otherwise));
+  return found.reachable > 0 ? static_cast<double>(found.above) : kUndefined;
 }
 
 constexpr FigureOption kCylinder[] = {
@@ -402,12 +413,18 @@ constexpr bool kLoad = true;
 
 std::optional<BuiltDevice> BuiltDevice::try_make(const Description& description, bool with_drives) {
   if (!value_problems(description).empty() || !beam_problems(description).empty()) return std::nullopt;
-  if (!with_drives) return BuiltDevice(description, Mechanism(description));
-  if (!drive_problems(description).empty()) return std::nullopt;
-  BuiltDevice device(description, mechanism_with_drives(description));
-  device.drives_ = joint_drives(description, device.mechanism_);
-  device.pneumatic_drives_ = joint_pneumatic_drives(description, device.mechanism_);
+  if (with_drives && !drive_problems(description).empty()) return std::nullopt;
+  BuiltDevice device(description);
+  if (!with_drives) return device;
+  device.mechanism_ = mechanism_with_drives(description);
+  device.drives_ = joint_drives(description, *device.mechanism_);
+  device.pneumatic_drives_ = joint_pneumatic_drives(description, *device.mechanism_);
   return device;
+}
+
+const Mechanism& BuiltDevice::mechanism() const {
+  if (!mechanism_) mechanism_.emplace(*description_);
+  return *mechanism_;
 }
 
 const Rates& PostureFigures::rates() {

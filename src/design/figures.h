@@ -19,23 +19,23 @@
 
 namespace zwidth {
 
-/// A device built from its description: what figures are taken of.
+/// A device built from its description: what figures are taken of. For one thread.
 class BuiltDevice {
  public:
-  /// Empty where the description breaks a rule. `with_drives`: drives too, and their inertia on the joints.
+  /// Empty where the description, which must outlive it, breaks a rule. `with_drives`: drives too, and their
+  /// inertia on the joints.
   static std::optional<BuiltDevice> try_make(const Description& description, bool with_drives);
 
   const Description& description() const { return *description_; }
-  const Mechanism& mechanism() const { return mechanism_; }
+  const Mechanism& mechanism() const;
   const std::vector<std::optional<Drive>>& drives() const { return drives_; }
   const std::vector<std::optional<PneumaticDrive>>& pneumatic_drives() const { return pneumatic_drives_; }
 
  private:
-  BuiltDevice(const Description& description, Mechanism mechanism)
-      : description_(&description), mechanism_(std::move(mechanism)) {}
+  explicit BuiltDevice(const Description& description) : description_(&description) {}
 
   const Description* description_;
-  Mechanism mechanism_;
+  mutable std::optional<Mechanism> mechanism_;  // built when first asked for: some figures need none
   std::vector<std::optional<Drive>> drives_;
   std::vector<std::optional<PneumaticDrive>> pneumatic_drives_;
 };

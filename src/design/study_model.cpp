@@ -79,6 +79,7 @@ class Planner {
     name_values();
     look_up_keys();
     look_up_figures();
+    look_up_algorithm();
     parse_everything();
     if (problems_.empty()) order();
     if (problems_.empty()) {
@@ -256,6 +257,22 @@ class Planner {
       }
       group(i);
     }
+  }
+
+  void look_up_algorithm() {
+    const std::string& name = plan_.study.search.algorithm;
+    const std::optional<SearchAlgorithm> algorithm = search_algorithm(name);
+    if (!algorithm) {
+      std::vector<std::string> known;
+      for (const SearchAlgorithmInfo& one : search_algorithms()) known.emplace_back(one.name);
+      wrong("search.algorithm", fmt::format("\"{}\"", name), "is not known", suggest(name, known));
+      return;
+    }
+    const bool several = plan_.study.objectives.size() > 1;
+    if (several ? info(*algorithm).several_objectives : info(*algorithm).one_objective) return;
+    wrong("search.algorithm", fmt::format("\"{}\"", name),
+          fmt::format("cannot search for {}", several ? "several objectives" : "one objective"),
+          several ? "take nsga2, or join them in one expression" : "take de or cmaes");
   }
 
   void check_measure(const StudyMeasure& measure, const FigureDefinition& figure, std::size_t i) {
@@ -946,9 +963,18 @@ DesignSheet StudyEvaluator::sheet(std::span<const double> design, std::span<cons
   return sheet;
 }
 
-Description StudyEvaluator::description(std::span<const double> design) {
-  scratch_->set(design, {});
-  return scratch_->device;
+Description StudyEvaluator::description(std::span<const double> design, const std::string& source) {
+  Scratch& s = *scratch_;
+  s.set(design, {});
+  Description result = s.device;
+  const auto note = [&](const std::vector<std::string>& keys) {
+    for (const std::string& key : keys) {
+      for (const NumberSlot& slot : find_numbers(result, key)) slot.set_source(source);
+    }
+  };
+  for (const StudyVariable& one : s.plan->study.variables) note(one.keys);
+  for (const StudyDerived& one : s.plan->study.derived) note(one.keys);
+  return result;
 }
 
 }  // namespace zwidth

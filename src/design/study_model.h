@@ -84,8 +84,9 @@ class StudyEvaluator {
   /// empty for not at all.
   DesignSheet sheet(std::span<const double> design, std::span<const double> tolerance = {});
 
-  /// The design as a description, which may break rules (`sheet().built`).
-  Description description(std::span<const double> design);
+  /// The design as a description, which may break rules (`sheet().built`). `source` is noted for all that the
+  /// study decides.
+  Description description(std::span<const double> design, const std::string& source);
 
  private:
   struct Scratch;

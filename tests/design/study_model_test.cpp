@@ -151,10 +151,12 @@ TEST(StudyModel, DesignsBecomeDescriptions) {
   const StudyModel model = small_model(
       std::string(kCrank) + "[[derived]]\nkey = \"mechanism.coupler\"\nvalue = \"2*a1\"\n" + kSmallest);
   StudyEvaluator evaluator(model);
-  const Description design = evaluator.description(std::vector{0.11});
+  const Description design = evaluator.description(std::vector{0.11}, "chosen: a test");
   const auto& five_bar = std::get<FiveBarDescription>(design.mechanism);
   EXPECT_EQ(five_bar.crank, 0.11);
   EXPECT_EQ(five_bar.coupler, 0.22);
+  EXPECT_EQ(five_bar.sources.at("crank"), "chosen: a test");
+  EXPECT_EQ(five_bar.sources.at("coupler"), "chosen: a test");
   EXPECT_TRUE(validate(design).empty());
   EXPECT_EQ(model.device_design(), std::vector{0.10});
 }
@@ -172,7 +174,8 @@ TEST(StudyModel, PartsAreChosenByName) {
   evaluator.evaluate(std::vector{0.0}, again);
   EXPECT_NE(first[0], second[0]);
   EXPECT_EQ(first, again);
-  EXPECT_EQ(evaluator.description(std::vector{1.0}).drives[0].motor.info.name, "maxon-ec-4pole-30-100w-48v");
+  EXPECT_EQ(evaluator.description(std::vector{1.0}, "").drives[0].motor.info.name,
+            "maxon-ec-4pole-30-100w-48v");
 }
 
 TEST(StudyModel, DesignsThatCannotBeAreNotEvaluated) {

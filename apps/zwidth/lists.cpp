@@ -7,6 +7,7 @@
 
 #include "zwidth/actuation/motor.h"
 #include "zwidth/description/problem.h"
+#include "zwidth/design/figures.h"
 
 /// `zwidth devices` and `zwidth parts`: what comes with zwidth.
 
@@ -38,6 +39,50 @@ int devices(bool json, const Terminal& terminal) {
   sheet.paragraph(
       "`zwidth report NAME` prints a data sheet, `zwidth show NAME > mine.toml` starts a device of your own.",
       2, Tint::dim);
+  print(sheet.text());
+  return kDone;
+}
+
+/// What studies may ask for.
+int figures(bool json, const Terminal& terminal) {
+  Json list = Json::array();
+  Sheet sheet(terminal);
+  sheet.title("Figures", "for [[measure]] in a study");
+  for (const bool of_posture : {true, false}) {
+    sheet.heading(of_posture ? "Of a posture" : "Of the device as a whole");
+    for (const FigureDefinition& figure : figure_definitions()) {
+      if (figure.of_posture != of_posture) continue;
+      Json entry;
+      entry["name"] = figure.name;
+      entry["unit"] = figure.unit;
+      entry["meaning"] = figure.meaning;
+      entry["of"] = of_posture ? "posture" : "device";
+      entry["needs_load"] = figure.needs_load;
+      Json options = Json::array();
+      std::string note(figure.meaning);
+      if (figure.needs_load) note += "; takes force, moment";
+      for (const FigureOption& option : figure.options) {
+        Json one;
+        one["name"] = option.name;
+        one["default"] = option.otherwise;
+        one["meaning"] = option.meaning;
+        options.push_back(one);
+        note += fmt::format("{}{}", &option == figure.options.data() ? "; options " : ", ", option.name);
+      }
+      entry["options"] = options;
+      list.push_back(entry);
+      sheet.line(fmt::format("  {:<28}{}", figure.name, figure.unit == "1" ? "" : figure.unit));
+      sheet.paragraph(note, 6, Tint::dim);
+    }
+  }
+  if (json) {
+    Json document;
+    document["figures"] = list;
+    print_json(document);
+    return kDone;
+  }
+  sheet.gap();
+  sheet.paragraph("reached_share is the share of a box, or of the joint ranges, that the tool reaches.");
   print(sheet.text());
   return kDone;
 }
@@ -271,6 +316,15 @@ void add_devices(CLI::App& app, Context& context) {
   add_json_flag(*verb, *json);
   verb->callback(
       [json, &context] { context.run = [json, &context] { return devices(*json, context.terminal); }; });
+}
+
+void add_figures(CLI::App& app, Context& context) {
+  CLI::App* verb = add_verb(app, "figures", "The figures that a study may ask for",
+                            "  zwidth figures\n  zwidth figures --json | jq -r '.figures[].name'");
+  auto json = std::make_shared<bool>(false);
+  add_json_flag(*verb, *json);
+  verb->callback(
+      [json, &context] { context.run = [json, &context] { return figures(*json, context.terminal); }; });
 }
 
 void add_parts(CLI::App& app, Context& context) {

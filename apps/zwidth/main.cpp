@@ -67,12 +67,14 @@ int run(int argc, char** argv) {
   add_workspace(app, context);
   add_size(app, context);
   add_synthesise(app, context);
+  add_optimise(app, context);
   add_reproduce(app, context);
   add_show(app, context);
   add_export(app, context);
   add_check(app, context);
   add_devices(app, context);
   add_parts(app, context);
+  add_figures(app, context);
   add_completion(app, context);
 
   // `zwidth help VERB` is `zwidth VERB --help`.

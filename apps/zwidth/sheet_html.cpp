@@ -766,6 +766,10 @@ class Page {
 
 }  // namespace
 
+std::string_view page_style() {
+  return kStyle;
+}
+
 std::string data_sheet_html(const DataSheet& sheet, const Description& description,
                             const std::vector<SheetFigure>& figures,
                             const std::vector<std::string>& overrides) {

@@ -74,8 +74,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `done` of `total` units are done. Cheap to call often.
-  void update(double done, double total);
+  /// `done` of `total` units are done; `note` says more. Cheap to call often.
+  void update(double done, double total, std::string_view note = {});
 
  private:
   std::string what_;

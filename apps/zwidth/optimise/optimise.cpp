@@ -1,0 +1,318 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <memory>
+#include <system_error>
+#include <thread>
+
+#include "interrupt.h"
+#include "optimise/outcome.h"
+#include "verbs.h"
+
+#include "zwidth/design/pareto.h"
+#include "zwidth/design/workers.h"
+
+/// `zwidth optimise`: searches for better designs, as a study file says.
+
+namespace zwidth {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct OptimiseArguments {
+  std::string study;
+  std::vector<std::string> overrides;
+  std::string directory;
+  std::vector<std::string> weights;
+  int threads = 0;
+  std::int64_t samples = 2000;
+  double checkpoint_seconds = 30.0;
+  bool resume = false;
+  bool json = false;
+};
+
+/// NAME=VALUE of --weights.
+std::map<std::string, double> weights_of(const OptimiseArguments& arguments, const Study& study) {
+  std::vector<std::string> known;
+  for (const StudyObjective& one : study.objectives) known.push_back(one.name);
+  std::map<std::string, double> weights;
+  for (const std::string& text : arguments.weights) {
+    const std::size_t equals = text.rfind('=');
+    const std::string name = text.substr(0, equals);
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw InputError(
+          fmt::format("--weights {}: \"{}\" is no objective; {}", text, name, suggest(name, known)));
+    }
+    const ParsedQuantity value = equals == std::string::npos
+                                     ? ParsedQuantity{}
+                                     : parse_quantity(text.substr(equals + 1), Dimension::number);
+    if (!value || *value.value < 0.0) {
+      throw InputError(
+          fmt::format("--weights {}: give a number that is not negative, as in {}=0.5", text, name));
+    }
+    weights[name] = *value.value;
+  }
+  return weights;
+}
+
+/// The study and its device, held to all rules.
+std::unique_ptr<StudyModel> read_model(const OptimiseArguments& arguments) {
+  const auto device_of = [](const Study& study) { return read_device(study.device, study.overrides); };
+  const Study study = read_study(arguments.study, arguments.overrides, catalogue(), [&](const Study& one) {
+    return study_problems(one, device_of(one), catalogue());
+  });
+  return std::make_unique<StudyModel>(study, device_of(study), catalogue());
+}
+
+fs::path prepared(const std::string& wanted, const std::string& name) {
+  const fs::path directory = wanted.empty() ? fs::path("optimise") / name : fs::path(wanted);
+  std::error_code error;
+  if (fs::exists(directory, error) && !fs::is_directory(directory, error)) {
+    throw InputError(fmt::format("-o {}: is a file; name a directory", directory.string()));
+  }
+  fs::create_directories(directory / "figures", error);
+  if (error) {
+    throw MachineError(fmt::format("cannot make the directory {}: {}; name another with -o", directory.string(),
+                                   error.message()));
+  }
+  return directory;
+}
+
+/// Which design of the front, by the study's rule or by weights.
+void choose(StudyOutcome& outcome, const StudyModel& model, const std::map<std::string, double>& by_hand) {
+  if (outcome.front.empty()) return;
+  const Study& study = model.study();
+  const std::size_t n = study.objectives.size();
+  if (n == 1) {
+    outcome.chosen = outcome.best(0);
+    outcome.choice = fmt::format("the best {}", study.objectives.front().name);
+    return;
+  }
+  const std::vector<double> values = outcome.minimised();
+  std::vector<double> weights;
+  std::string said;
+  const std::map<std::string, double>& given = by_hand.empty() ? study.choice.weights : by_hand;
+  for (const StudyObjective& one : study.objectives) {
+    const auto found = given.find(one.name);
+    weights.push_back(found == given.end() ? 1.0 : found->second);
+    said += fmt::format("{}{} {}", said.empty() ? "" : ", ", one.name, trimmed(weights.back(), 4));
+  }
+  const ChoiceRule rule = by_hand.empty() ? study.choice.rule : ChoiceRule::weights;
+  if (rule == ChoiceRule::knee) {
+    outcome.chosen = knee(values, n);
+    outcome.choice = "the knee: farthest from the plane through the best design of each objective";
+    if (outcome.chosen) return;
+    // A front that bulges the other way has none.
+  }
+  if (rule == ChoiceRule::topsis) {
+    const std::vector<double> close = topsis(values, n, weights);
+    outcome.chosen = static_cast<std::size_t>(std::max_element(close.begin(), close.end()) - close.begin());
+    outcome.choice = fmt::format("TOPSIS, weights {}", said);
+    return;
+  }
+  const std::vector<double> rms = weighted_rms(values, n, weights);
+  outcome.chosen = static_cast<std::size_t>(std::min_element(rms.begin(), rms.end()) - rms.begin());
+  outcome.choice = fmt::format("{}least weighted root mean square of the normalised objectives, weights {}",
+                               rule == ChoiceRule::knee ? "no knee; " : "", said);
+}
+
+/// A batch evaluation of whatever `of` makes of a row, on all threads.
+BatchEvaluation spread_out(
+    const StudyModel& model, std::size_t variables, std::size_t outcomes, int threads,
+    std::function<void(StudyEvaluator&, std::span<const double>, std::span<double>)> of) {
+  return on_workers(variables, outcomes,
+                    [&model, of = std::move(of)]() -> DesignEvaluation {
+                      auto evaluator = std::make_shared<StudyEvaluator>(model);
+                      return [evaluator, of](std::span<const double> row, std::span<double> outcome) {
+                        of(*evaluator, row, outcome);
+                      };
+                    },
+                    {.threads = threads, .cancel = &stop_on_interrupt()});
+}
+
+void find_slopes(StudyOutcome& outcome, const StudyModel& model, int threads) {
+  const std::span<const double> chosen = outcome.design(*outcome.chosen);
+  ChosenSlopes found;
+  std::vector<double> at, steps;
+  for (std::size_t v = 0; v < outcome.problem.variables.size(); ++v) {
+    const SearchVariable& variable = outcome.problem.variables[v];
+    if (variable.integer || !(variable.max > variable.min)) continue;
+    constexpr double kStep = 1e-5;  // of the range: differences of smooth figures to some ten digits
+    found.variables.push_back(v);
+    at.push_back(chosen[v]);
+    steps.push_back(kStep * (variable.max - variable.min));
+  }
+  if (at.empty()) return;
+  const std::vector<double> design(chosen.begin(), chosen.end());
+  const std::size_t objectives = outcome.problem.objectives.size();
+  const BatchEvaluation evaluate =
+      spread_out(model, at.size(), objectives, threads,
+                 [&](StudyEvaluator& evaluator, std::span<const double> row, std::span<double> result) {
+                   std::vector<double> moved = design;
+                   for (std::size_t i = 0; i < row.size(); ++i) moved[found.variables[i]] = row[i];
+                   const DesignSheet sheet = evaluator.sheet(moved);
+                   std::copy(sheet.objectives.begin(), sheet.objectives.end(), result.begin());
+                 });
+  found.slopes = sensitivity(evaluate, at, steps, objectives);
+  if (found.slopes.complete) outcome.slopes = std::move(found);
+}
+
+void try_tolerances(StudyOutcome& outcome, const StudyModel& model, int threads, std::int64_t samples) {
+  const std::size_t count = model.study().tolerances.size();
+  if (count == 0 || samples <= 0) return;
+  const std::span<const double> chosen = outcome.design(*outcome.chosen);
+  const std::vector<double> design(chosen.begin(), chosen.end());
+  const std::size_t outcomes = outcome.problem.outcome_size() - 1;  // "can be built" is not asked
+  const BatchEvaluation evaluate = spread_out(
+      model, count, outcomes, threads,
+      [&](StudyEvaluator& evaluator, std::span<const double> row, std::span<double> result) {
+        const DesignSheet sheet = evaluator.sheet(design, row);
+        const auto after = std::copy(sheet.objectives.begin(), sheet.objectives.end(), result.begin());
+        std::copy(sheet.violations.begin(), sheet.violations.end(), after);
+      });
+  const std::vector<double> nominal(count, 0.0);
+  const std::vector<Tolerance> tolerances(count, Tolerance{.size = 1.0});
+  ToleranceOptions options;
+  options.samples = samples;
+  options.seed = model.study().search.seed;
+  options.constraints = model.study().constraints.size();
+  ToleranceStudy study = tolerance_study(evaluate, nominal, tolerances, outcomes, options);
+  if (study.complete) outcome.tolerances = std::move(study);
+}
+
+/// The words of a study that decide its outcomes: a checkpoint belongs to them.
+std::string identity_of(const StudyModel& model) {
+  const Study& study = model.study();
+  std::string text = study.device;
+  for (const std::string& one : study.overrides) text += "|" + one;
+  for (const StudyDerived& one : study.derived) text += "|" + one.name + "=" + one.value;
+  for (const StudyMeasure& one : study.measures) text += "|" + one.name + ":" + one.figure + one.posture;
+  for (const StudyObjective& one : study.objectives) text += "|" + one.value;
+  for (const StudyConstraint& one : study.constraints) text += "|" + one.value + "<" + one.max + ">" + one.min;
+  return text;
+}
+
+StudyOutcome run_search(const StudyModel& model, const OptimiseArguments& arguments,
+                        const fs::path& directory) {
+  const Study& study = model.study();
+  StudyOutcome outcome;
+  outcome.workers = arguments.threads > 0 ? arguments.threads
+                                          : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  outcome.problem = model.search_problem();
+  outcome.problem.identity = identity_of(model);
+  outcome.problem.evaluate =
+      spread_out(model, outcome.problem.variables.size(), outcome.problem.outcome_size(), arguments.threads,
+                 [](StudyEvaluator& evaluator, std::span<const double> row, std::span<double> result) {
+                   evaluator.evaluate(row, result);
+                 });
+  SearchOptions& options = outcome.options;
+  options.algorithm = *search_algorithm(study.search.algorithm);
+  options.population = study.search.population;
+  if (options.algorithm == SearchAlgorithm::grid) options.population = std::max(options.population, 1000);
+  options.generations = study.search.generations;
+  options.seed = static_cast<std::uint32_t>(study.search.seed);
+  options.checkpoint = directory / "checkpoint";
+  options.checkpoint_seconds = arguments.checkpoint_seconds;
+  options.resume = arguments.resume;
+  Progress progress(study.name, "designs");
+  double designs = 0.0;
+  if (options.algorithm == SearchAlgorithm::grid) {
+    designs = 1.0;
+    for (const SearchVariable& one : outcome.problem.variables) designs *= one.max - one.min + 1.0;
+  } else {
+    designs = static_cast<double>(options.generations + 1) * options.population;
+  }
+  options.progress = [&](const Generation& at) {
+    progress.update(
+        static_cast<double>(at.evaluations), designs,
+        fmt::format("generation {}, hypervolume {}, {:.0f} % feasible", at.number,
+                    std::isnan(at.hypervolume) ? "none" : number(at.hypervolume), 100.0 * at.feasible_share));
+    return !stop_on_interrupt();
+  };
+  const std::vector<std::string> problems = search_problems(outcome.problem, options);
+  if (!problems.empty()) {
+    std::string text;
+    for (const std::string& one : problems) text += (text.empty() ? "" : "; ") + one;
+    throw InputError(fmt::format("{}: {}", study.name, text));
+  }
+  try {
+    outcome.result = search(outcome.problem, options);
+  } catch (const std::runtime_error& error) {
+    throw InputError(fmt::format("--resume: {}", error.what()));
+  }
+  options.progress = nullptr;
+  return outcome;
+}
+
+int optimise(const OptimiseArguments& arguments, const Terminal& terminal) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::unique_ptr<StudyModel> model = read_model(arguments);
+  const std::map<std::string, double> weights = weights_of(arguments, model->study());
+  const fs::path directory = prepared(arguments.directory, model->study().name);
+  StudyOutcome outcome = run_search(*model, arguments, directory);
+  StudyEvaluator evaluator(*model);
+  for (std::size_t i = 0; i < outcome.result.front.size(); ++i) {
+    outcome.front.push_back(evaluator.sheet(outcome.design(i)));
+  }
+  choose(outcome, *model, weights);
+  if (outcome.chosen && !stop_on_interrupt()) {
+    find_slopes(outcome, *model, arguments.threads);
+    try_tolerances(outcome, *model, arguments.threads, arguments.samples);
+  }
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  for (const std::string& note : outcome.result.notes) complain(note);
+  const auto files = write_outcome(outcome, *model, directory.string());
+  if (arguments.json) {
+    print_json(outcome_json(outcome, *model));
+  } else {
+    print(outcome_text(outcome, *model, terminal, files));
+  }
+  return outcome.chosen ? kDone : kNo;
+}
+
+}  // namespace
+
+void add_optimise(CLI::App& app, Context& context) {
+  CLI::App* verb =
+      add_verb(app, "optimise", "Search for better designs of a device",
+               "  zwidth optimise r-cube-kinematics                     writes optimise/r-cube-kinematics/\n"
+               "  zwidth optimise mine.toml --set search.generations=50 -o out\n"
+               "  zwidth optimise mine.toml --resume                    goes on from its checkpoint\n"
+               "  zwidth optimise delta-drive --weights \"footprint=0.2\"\n"
+               "  zwidth report optimise/delta-drive/chosen.toml");
+  auto arguments = std::make_shared<OptimiseArguments>();
+  verb->add_option("STUDY", arguments->study,
+                   "a study that comes with zwidth, a .toml file, or - for the input")
+      ->required();
+  verb->add_option("--set", arguments->overrides, "change a key of the study: KEY=VALUE")
+      ->type_name("KEY=VALUE")
+      ->take_all();
+  verb->add_option("-o,--output", arguments->directory, "directory for the results; optimise/NAME if not given")
+      ->type_name("DIR");
+  verb->add_flag("--resume", arguments->resume, "go on from the checkpoint in that directory");
+  verb->add_option("--weights", arguments->weights, "choose by weights: OBJECTIVE=WEIGHT,...; 1 if not given")
+      ->type_name("NAME=W")
+      ->delimiter(',')
+      ->take_all();
+  verb->add_option("--threads", arguments->threads, "at most so many; all cores if not given")
+      ->check(CLI::Range(0, 4096))
+      ->type_name("N");
+  verb->add_option("--samples", arguments->samples, "of the tolerances; 0 leaves them out")
+      ->check(CLI::Range(0, 10000000))
+      ->type_name("N")
+      ->capture_default_str();
+  verb->add_option("--checkpoint", arguments->checkpoint_seconds, "seconds between checkpoints")
+      ->check(CLI::Range(0.0, 1e6))
+      ->type_name("S")
+      ->capture_default_str();
+  add_json_flag(*verb, arguments->json);
+  verb->callback([arguments, &context] {
+    context.run = [arguments, &context] { return optimise(*arguments, context.terminal); };
+  });
+}
+
+}  // namespace zwidth

@@ -49,6 +49,8 @@ std::optional<std::string> library_of(const std::string& include) {
                                                                 {"oneapi/tbb", "TBB::tbb"},
                                                                 {"hwy/", "hwy::hwy"},
                                                                 {"pagmo/", "Pagmo::pagmo"},
+                                                                {"nlopt", "NLopt::nlopt"},
+                                                                {"mpi.h", "MPI::MPI_CXX"},
                                                                 {"muParser", "muparser::muparser"},
                                                                 {"mujoco/", "mujoco::mujoco"},
                                                                 {"kdl/", "orocos_kdl::orocos_kdl"},

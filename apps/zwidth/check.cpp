@@ -1,9 +1,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <memory>
 
 #include "model.h"
+#include "study.h"
 #include "verbs.h"
 
 #include "zwidth/description/names.h"
@@ -109,6 +111,36 @@ std::string joints_text(const Mechanism& mechanism) {
                      free > 0 ? fmt::format(", {} of which the hand alone moves", free) : "");
 }
 
+/// A study in a few lines: what it chooses, what it asks for.
+void check_study(const std::string& name, const std::vector<std::string>& overrides, Json& entry,
+                 Sheet& sheet) {
+  const std::unique_ptr<StudyModel> model = read_study_model(name, overrides);
+  const Study& study = model->study();
+  const SearchProblem problem = model->search_problem();
+  entry["ok"] = true;
+  entry["name"] = study.name;
+  entry["title"] = study.title;
+  entry["study_of"] = study.device;
+  entry["variables"] = Json::array();
+  entry["objectives"] = problem.objectives;
+  entry["constraints"] = problem.constraints;
+  entry["problems"] = Json::array();
+  sheet.title(name, "no problems");
+  sheet.row("study", study.name, study.title);
+  sheet.row("device", study.device);
+  double designs = 1.0;
+  for (const SearchVariable& one : problem.variables) {
+    entry["variables"].push_back(one.name);
+    designs *= one.integer ? one.max - one.min + 1.0 : HUGE_VAL;
+  }
+  sheet.row("variables", fmt::format("{}", problem.variables.size()),
+            std::isfinite(designs) ? fmt::format("{} designs in all", number(designs)) : "");
+  sheet.row("objectives", fmt::format("{}", problem.objectives.size()));
+  sheet.row("constraints", fmt::format("{}", study.constraints.size()));
+  sheet.row("figures", fmt::format("{}", study.measures.size()));
+  sheet.gap();
+}
+
 int check(const CheckArguments& arguments, const Terminal& terminal) {
   Json list = Json::array();
   Sheet sheet(terminal);
@@ -117,6 +149,11 @@ int check(const CheckArguments& arguments, const Terminal& terminal) {
     Json entry;
     entry["device"] = device;
     try {
+      if (names_study(device)) {
+        check_study(device, arguments.overrides, entry, sheet);
+        list.push_back(entry);
+        continue;
+      }
       const Model model(read_device(device, arguments.overrides));
       const Mechanism& mechanism = model.mechanism;
       const MobilitySample sample = sample_mobility(mechanism);
@@ -186,13 +223,14 @@ int check(const CheckArguments& arguments, const Terminal& terminal) {
 }  // namespace
 
 void add_check(CLI::App& app, Context& context) {
-  CLI::App* verb = add_verb(app, "check", "Read device files and list every problem and warning",
+  CLI::App* verb = add_verb(app, "check", "Read device and study files and list every problem and warning",
                             "  zwidth check mine.toml\n"
                             "  zwidth check delta --set drive.transmission.preload=\"5 N\"\n"
                             "  zwidth check devices/*.toml --json\n"
+                            "  zwidth check r-cube-kinematics\n"
                             "\nExits 2 if any file has a problem; warnings do not count.");
   auto arguments = std::make_shared<CheckArguments>();
-  verb->add_option("DEVICE", arguments->devices, "built-in devices or .toml files")->required();
+  verb->add_option("DEVICE", arguments->devices, "built-in devices or studies, or .toml files")->required();
   verb->add_option("--set", arguments->overrides, "change a value of the device files; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);

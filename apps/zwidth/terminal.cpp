@@ -291,17 +291,17 @@ void Progress::update(double done, double total, std::string_view note) {
   const double share = total > 0.0 ? std::clamp(done / total, 0.0, 1.0) : 0.0;
   const std::string rate_text =
       rate >= 1e6 ? fmt::format("{:.1f} M{}/s", rate / 1e6, unit_) : fmt::format("{:.3g} {}/s", rate, unit_);
-  const std::string more = note.empty() ? "" : fmt::format("  {}", note);
+  std::string more;
+  if (!note.empty()) more.append("  ").append(note);
   std::string line;
   if (terminal_.interactive) {
     const int cells = note.empty() ? 24 : 12;
     const int full = static_cast<int>(std::lround(share * cells));
-    line = fmt::format("\r\x1b[K{} {}{} {:3.0f} %  {}  {:.0f} s left{}", what_, repeated("█", full),
-                       repeated("░", cells - full), 100.0 * share, rate_text, left, more);
-    // One line only; the note stands at its end.
-    const int excess = columns(line) - (terminal_.width - 1);
-    if (excess > 0 && static_cast<size_t>(excess) <= more.size())
-      line.resize(line.size() - static_cast<size_t>(excess));
+    line = fmt::format("\r\x1b[K{} {}{} {:3.0f} %  {}  {:.0f} s left", what_, repeated("█", full),
+                       repeated("░", cells - full), 100.0 * share, rate_text, left);
+    // One line only: what does not fit of the note is left out.
+    const int room = terminal_.width - 1 - columns(line);
+    if (room > 2) line += more.substr(0, static_cast<size_t>(room));
   } else {
     line = fmt::format("{}: {:.0f} %, {}, {:.0f} s left{}\n", what_, 100.0 * share, rate_text, left, more);
   }

@@ -10,6 +10,7 @@
 
 #include "interrupt.h"
 #include "optimise/outcome.h"
+#include "study.h"
 #include "verbs.h"
 
 #include "zwidth/design/pareto.h"
@@ -57,15 +58,6 @@ std::map<std::string, double> weights_of(const OptimiseArguments& arguments, con
     weights[name] = *value.value;
   }
   return weights;
-}
-
-/// The study and its device, held to all rules.
-std::unique_ptr<StudyModel> read_model(const OptimiseArguments& arguments) {
-  const auto device_of = [](const Study& study) { return read_device(study.device, study.overrides); };
-  const Study study = read_study(arguments.study, arguments.overrides, catalogue(), [&](const Study& one) {
-    return study_problems(one, device_of(one), catalogue());
-  });
-  return std::make_unique<StudyModel>(study, device_of(study), catalogue());
 }
 
 fs::path prepared(const std::string& wanted, const std::string& name) {
@@ -250,7 +242,7 @@ StudyOutcome run_search(const StudyModel& model, const OptimiseArguments& argume
 
 int optimise(const OptimiseArguments& arguments, const Terminal& terminal) {
   const auto start = std::chrono::steady_clock::now();
-  const std::unique_ptr<StudyModel> model = read_model(arguments);
+  const std::unique_ptr<StudyModel> model = read_study_model(arguments.study, arguments.overrides);
   const std::map<std::string, double> weights = weights_of(arguments, model->study());
   const fs::path directory = prepared(arguments.directory, model->study().name);
   StudyOutcome outcome = run_search(*model, arguments, directory);

@@ -1,0 +1,170 @@
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "run_command.h"
+
+namespace zwidth::testing {
+namespace {
+
+constexpr const char* kEven = R"toml([study]
+name = "even"
+device = "five-bar"
+[search]
+population = 20
+generations = 8
+[[variable]]
+key = "mechanism.crank"
+min = "8 cm"
+max = "14 cm"
+[[variable]]
+key = "mechanism.coupler"
+min = "9 cm"
+max = "18 cm"
+[[measure]]
+name = "condition"
+figure = "condition_number"
+over = "box"
+position = [0, "150 mm", 0]
+size = ["60 mm", "60 mm", 0]
+points = 3
+statistic = "max"
+[[objective]]
+name = "worst"
+minimise = "condition"
+[[objective]]
+name = "length"
+minimise = "crank + coupler"
+[[constraint]]
+name = "well conditioned"
+value = "condition"
+max = 5
+[[tolerance]]
+key = "mechanism.crank"
+half_width = "0.1 mm"
+)toml";
+
+nlohmann::json designs(const nlohmann::json& document) {
+  return document.at("pareto");
+}
+
+TEST(Optimise, GivesTheSameDesignsOnAnyNumberOfThreads) {
+  const ScratchDirectory scratch;
+  const std::string study = scratch.file("even.toml", kEven);
+  const auto go = [&](const char* threads, const char* folder) {
+    return run({"optimise", study, "-o", (scratch.path() / folder).string(), "--threads", threads, "--json",
+                "--samples", "50"});
+  };
+  const Outcome one = go("1", "one"), two = go("2", "two");
+  ASSERT_EQ(one.status, 0) << one.err;
+  ASSERT_EQ(two.status, 0) << two.err;
+  EXPECT_GT(designs(one.json()).size(), 3U);
+  EXPECT_EQ(designs(one.json()), designs(two.json()));
+  EXPECT_EQ(one.json().at("chosen"), two.json().at("chosen"));
+}
+
+TEST(Optimise, WritesADeviceThatReportReads) {
+  const ScratchDirectory scratch;
+  const std::string study = scratch.file("even.toml", kEven);
+  const std::string folder = (scratch.path() / "out").string();
+  const Outcome outcome = run({"optimise", study, "-o", folder, "--samples", "50"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* word : {"Pareto set", "Chosen design", "Sensitivity", "Tolerances", "worst", "length"}) {
+    EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
+  }
+  for (const char* name :
+       {"index.html", "chosen.toml", "pareto.csv", "pareto.json", "history.csv", "checkpoint",
+        "figures/front-1-2.svg", "figures/parallel-coordinates.svg", "figures/hypervolume.svg"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder + "/" + name)) << name;
+  }
+  const Outcome checked = run({"check", folder + "/chosen.toml"});
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  const std::string device = read_text(folder + "/chosen.toml");
+  EXPECT_NE(device.find("chosen: by the study even"), std::string::npos);
+}
+
+TEST(Optimise, GoesOnWhereItWasStopped) {
+  const ScratchDirectory scratch;
+  const std::string study = scratch.file("even.toml", kEven);
+  const std::string whole = (scratch.path() / "whole").string(), parts = (scratch.path() / "parts").string();
+  const Outcome all = run({"optimise", study, "-o", whole, "--json", "--samples", "0"});
+  ASSERT_EQ(
+      run({"optimise", study, "-o", parts, "--set", "search.generations=3", "--json", "--samples", "0"}).status,
+      0);
+  const Outcome rest = run({"optimise", study, "-o", parts, "--resume", "--json", "--samples", "0"});
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  EXPECT_EQ(designs(all.json()), designs(rest.json()));
+  // A checkpoint of another study is refused.
+  const Outcome other = run({"optimise", study, "-o", parts, "--resume", "--set", "variable[0].max='15 cm'"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("--resume"), std::string::npos) << other.err;
+}
+
+TEST(Optimise, SaysWhichConstraintIsNeverMet) {
+  const ScratchDirectory scratch;
+  const std::string study = scratch.file("even.toml", kEven);
+  const std::string folder = (scratch.path() / "out").string();
+  const std::vector<std::string> words = {"optimise", study, "-o", folder, "--set", "constraint[0].max=0.5"};
+  const Outcome outcome = run(words);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.out.find("\"well conditioned\" was never met"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("least violation"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder + "/chosen.toml"));
+}
+
+TEST(Optimise, WeightsChooseAlongTheFront) {
+  const ScratchDirectory scratch;
+  const std::string study = scratch.file("even.toml", kEven);
+  const auto length = [&](const char* weights) {
+    const Outcome outcome = run({"optimise", study, "-o", (scratch.path() / "out").string(), "--weights",
+                                 weights, "--json", "--samples", "0"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.json().at("chosen").at("objectives").at("length").get<double>();
+  };
+  EXPECT_LT(length("length=1,worst=0"), length("length=0,worst=1"));
+  const Outcome wrong = run({"optimise", study, "--weights", "lenght=1"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("length"), std::string::npos);
+}
+
+// The published optimum of the five-bar, of two designs that tie the one with the larger circle.
+TEST(Optimise, FindsThePublishedFiveBar) {
+  const ScratchDirectory scratch;
+  const Outcome outcome = run({"optimise", "five-bar-grid", "-o", scratch.path().string(), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json chosen = outcome.json().at("chosen");
+  EXPECT_NEAR(chosen.at("variables").at("a1").get<double>(), 0.10, 1e-12);
+  EXPECT_NEAR(chosen.at("variables").at("a2").get<double>(), 0.15, 1e-12);
+  EXPECT_NEAR(chosen.at("variables").at("a3").get<double>(), 0.03, 1e-12);
+  EXPECT_EQ(chosen.at("objectives").at("bad_points").get<double>(), 272.0);
+  EXPECT_EQ(outcome.json().at("search").at("evaluations").get<int>(), 60);
+}
+
+// d/D for the range 0..0.9 (Görgülü 2018, section 7.3, as corrected).
+TEST(Optimise, FindsThePublishedSection) {
+  const ScratchDirectory scratch;
+  const Outcome outcome = run({"optimise", "r-cube-section", "-o", scratch.path().string(), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NEAR(outcome.json().at("chosen").at("variables").at("ratio").get<double>(), 0.7636, 1e-3);
+}
+
+TEST(Optimise, ExplainsMistakesInStudies) {
+  const ScratchDirectory scratch;
+  std::string text = kEven;
+  text.replace(text.find("condition_number"), 16, "condition_numbre");
+  const Outcome outcome = run({"optimise", scratch.file("even.toml", text)});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("even.toml:16"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("condition_number"), std::string::npos) << outcome.err;
+  EXPECT_EQ(run({"optimise", "no-such-study"}).status, 2);
+}
+
+TEST(FiguresVerb, ListsWhatStudiesMayAskFor) {
+  const Outcome outcome = run({"figures", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_GT(outcome.json().at("figures").size(), 30U);
+  EXPECT_EQ(run({"figures"}).status, 0);
+}
+
+}  // namespace
+}  // namespace zwidth::testing

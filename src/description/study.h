@@ -103,7 +103,7 @@ struct StudyTolerance {
 };
 
 struct StudySearch {
-  std::string algorithm = "nsga2";  ///< as `search_algorithms` (design/search.h) names them
+  std::string algorithm = {};  ///< as `search_algorithms` (design/search.h) names them; empty: one that fits
   int population = 100;
   int generations = 200;
   std::uint64_t seed = 1;

@@ -270,7 +270,10 @@ std::vector<Posture> named_postures(const BuiltDevice& device) {
   return postures;
 }
 
-double demand_utilisation(const BuiltDevice& device, LoadKind kind) {
+constexpr FigureOption kJoints[] = {
+    {"first_joint", 0, Dimension::number, "of the active joints that count, from 0"},
+    {"last_joint", 1000, Dimension::number, "of the active joints that count"}};
+double demand_utilisation(const BuiltDevice& device, LoadKind kind, const FigureOptions& options) {
   std::vector<SizingPosture> postures;
   for (const Posture& posture : named_postures(device)) postures.push_back({"", posture});
   const std::vector<LoadDescription>& loads = device.description().loads;
@@ -280,17 +283,23 @@ double demand_utilisation(const BuiltDevice& device, LoadKind kind) {
   };
   double worst = kUndefined;
   const Sizing sizing = size_drives(postures, loads, capability);
-  for (const JointDemand& demand : sizing.demands(kind)) {
-    if (demand.posture < 0) continue;
+  const std::vector<JointDemand>& demands = sizing.demands(kind);
+  for (std::size_t i = 0; i < demands.size(); ++i) {
+    const JointDemand& demand = demands[i];
+    const auto joint = static_cast<double>(i);
+    if (demand.posture < 0 || joint < options.get("first_joint", kJoints[0].otherwise) ||
+        joint > options.get("last_joint", kJoints[1].otherwise)) {
+      continue;
+    }
     worst = std::isnan(worst) ? demand.utilisation : std::max(worst, demand.utilisation);
   }
   return worst;
 }
-double continuous_utilisation(const BuiltDevice& device, const FigureOptions&) {
-  return demand_utilisation(device, LoadKind::continuous);
+double continuous_utilisation(const BuiltDevice& device, const FigureOptions& options) {
+  return demand_utilisation(device, LoadKind::continuous, options);
 }
-double peak_utilisation(const BuiltDevice& device, const FigureOptions&) {
-  return demand_utilisation(device, LoadKind::peak);
+double peak_utilisation(const BuiltDevice& device, const FigureOptions& options) {
+  return demand_utilisation(device, LoadKind::peak, options);
 }
 
 constexpr FigureOption kSpread[] = {
@@ -562,8 +571,8 @@ std::span<const FigureDefinition> figure_definitions() {
                 margin_utilisation, kDrives),
       of_device("continuous_utilisation", "1",
                 "torque of the continuous loads in the named postures over what the drives give, the largest",
-                continuous_utilisation, kDrives),
-      of_device("peak_utilisation", "1", "the same of the peak loads", peak_utilisation, kDrives),
+                continuous_utilisation, kDrives, kJoints),
+      of_device("peak_utilisation", "1", "the same of the peak loads", peak_utilisation, kDrives, kJoints),
       of_device("balance_torque", "N m", "largest torque of the links' weight over the joint ranges",
                 balance_torque, kNoDrives, kSpread),
       of_device("badly_conditioned_points", "1",

@@ -261,6 +261,7 @@ class Planner {
 
   void look_up_algorithm() {
     const std::string& name = plan_.study.search.algorithm;
+    if (name.empty()) return;
     const std::optional<SearchAlgorithm> algorithm = search_algorithm(name);
     if (!algorithm) {
       std::vector<std::string> known;
@@ -516,6 +517,11 @@ double value_of(const StudyVariable& variable, double searched) {
 }
 
 }  // namespace
+
+SearchAlgorithm StudyModel::algorithm() const {
+  const SearchAlgorithm fitting = study().objectives.size() > 1 ? SearchAlgorithm::nsga2 : SearchAlgorithm::de;
+  return search_algorithm(study().search.algorithm).value_or(fitting);
+}
 
 SearchProblem StudyModel::search_problem() const {
   SearchProblem problem;
@@ -842,11 +848,16 @@ struct StudyEvaluator::Scratch {
 
   // ---- outcomes
 
+  // A limit that is met exactly may be missed by rounding.
   double violation(std::size_t c, double value) const {
     const double scale = plan->study.constraints[c].scale;
+    const auto by = [&](double excess, double limit) {
+      constexpr double kRounding = 1e-9;
+      return excess > kRounding * std::max(std::abs(limit), scale) || std::isnan(excess) ? excess / scale : 0.0;
+    };
     double worst = std::isnan(value) ? kUndefined : 0.0;
-    if (low[c]) worst = worse(worst, ((*low[c])() - value) / scale);
-    if (high[c]) worst = worse(worst, (value - (*high[c])()) / scale);
+    if (low[c]) worst = worse(worst, by((*low[c])() - value, (*low[c])()));
+    if (high[c]) worst = worse(worst, by(value - (*high[c])(), (*high[c])()));
     return worst;
   }
   static double worse(double a, double b) {

@@ -51,6 +51,9 @@ class StudyModel {
   const Study& study() const;
   const Description& device() const;  ///< as the file has it, before anything is chosen
 
+  /// The study's, or where it names none nsga2 for several objectives and de for one.
+  SearchAlgorithm algorithm() const;
+
   /// The search space and the names of outcomes; `evaluate` is left to the caller. Stepped variables and
   /// choices of parts are whole numbers, counted from 0. The first constraint is that a design can be built and
   /// all that is asked of it is defined.

@@ -14,7 +14,9 @@
 #include "verbs.h"
 
 #include "zwidth/design/pareto.h"
+#include "zwidth/design/refine.h"
 #include "zwidth/design/workers.h"
+#include "zwidth/ranks/ranks.h"
 
 /// `zwidth optimise`: searches for better designs, as a study file says.
 
@@ -188,21 +190,31 @@ std::string identity_of(const StudyModel& model) {
   return text;
 }
 
-StudyOutcome run_search(const StudyModel& model, const OptimiseArguments& arguments,
-                        const fs::path& directory) {
+/// What evaluates designs in this process.
+BatchEvaluation own_evaluation(const StudyModel& model, const SearchProblem& problem, int threads) {
+  return spread_out(model, problem.variables.size(), problem.outcome_size(), threads,
+                    [](StudyEvaluator& evaluator, std::span<const double> row, std::span<double> result) {
+                      evaluator.evaluate(row, result);
+                    });
+}
+
+/// `ranks`: of an MPI job, if this is one.
+StudyOutcome run_search(const StudyModel& model, const OptimiseArguments& arguments, const fs::path& directory,
+                        Ranks* ranks) {
   const Study& study = model.study();
   StudyOutcome outcome;
   outcome.workers = arguments.threads > 0 ? arguments.threads
                                           : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   outcome.problem = model.search_problem();
   outcome.problem.identity = identity_of(model);
-  outcome.problem.evaluate =
-      spread_out(model, outcome.problem.variables.size(), outcome.problem.outcome_size(), arguments.threads,
-                 [](StudyEvaluator& evaluator, std::span<const double> row, std::span<double> result) {
-                   evaluator.evaluate(row, result);
-                 });
+  outcome.problem.evaluate = own_evaluation(model, outcome.problem, arguments.threads);
+  if (ranks != nullptr) {
+    outcome.workers *= ranks->size();
+    outcome.problem.evaluate = ranks->spread(outcome.problem.variables.size(), outcome.problem.outcome_size(),
+                                             outcome.problem.evaluate);
+  }
   SearchOptions& options = outcome.options;
-  options.algorithm = *search_algorithm(study.search.algorithm);
+  options.algorithm = model.algorithm();
   options.population = study.search.population;
   if (options.algorithm == SearchAlgorithm::grid) options.population = std::max(options.population, 1000);
   options.generations = study.search.generations;
@@ -240,17 +252,53 @@ StudyOutcome run_search(const StudyModel& model, const OptimiseArguments& argume
   return outcome;
 }
 
-int optimise(const OptimiseArguments& arguments, const Terminal& terminal) {
+/// Improves the chosen design nearby; the better one joins the front.
+void refine_choice(StudyOutcome& outcome, const StudyModel& model) {
+  const std::size_t objectives = outcome.problem.objectives.size();
+  RefineOptions options;
+  if (objectives > 1) {
+    const ObjectiveRange range = objective_range(outcome.minimised(), objectives);
+    options.ideal = range.min;
+    options.nadir = range.max;
+  }
+  const Refinement better = refine(outcome.problem, outcome.design(*outcome.chosen), options);
+  outcome.result.evaluations += better.evaluations;
+  if (!better.improved) return;
+  SearchResult& result = outcome.result;
+  result.front.push_back(result.designs.size() / outcome.problem.variables.size());
+  result.designs.insert(result.designs.end(), better.design.begin(), better.design.end());
+  result.outcomes.insert(result.outcomes.end(), better.outcomes.begin(), better.outcomes.end());
+  outcome.front.push_back(StudyEvaluator(model).sheet(better.design));
+  outcome.chosen = outcome.front.size() - 1;
+  outcome.choice += "; refined by a local search";
+}
+
+int optimise(OptimiseArguments arguments, const Terminal& terminal) {
   const auto start = std::chrono::steady_clock::now();
   const std::unique_ptr<StudyModel> model = read_study_model(arguments.study, arguments.overrides);
   const std::map<std::string, double> weights = weights_of(arguments, model->study());
+  std::optional<Ranks> ranks;
+  if (Ranks::started_by_launcher()) {
+    ranks.emplace();
+    // A launcher starts as many ranks as there are cores to use.
+    if (arguments.threads == 0 && ranks->size() > 1) arguments.threads = 1;
+    if (!ranks->drives()) {
+      const SearchProblem problem = model->search_problem();
+      ranks->serve(problem.variables.size(), problem.outcome_size(),
+                   own_evaluation(*model, problem, arguments.threads));
+      return kDone;
+    }
+  }
   const fs::path directory = prepared(arguments.directory, model->study().name);
-  StudyOutcome outcome = run_search(*model, arguments, directory);
+  StudyOutcome outcome = run_search(*model, arguments, directory, ranks ? &*ranks : nullptr);
   StudyEvaluator evaluator(*model);
   for (std::size_t i = 0; i < outcome.result.front.size(); ++i) {
     outcome.front.push_back(evaluator.sheet(outcome.design(i)));
   }
   choose(outcome, *model, weights);
+  if (outcome.chosen && model->study().search.refine && !stop_on_interrupt()) refine_choice(outcome, *model);
+  outcome.problem.evaluate = nullptr;
+  ranks.reset();  // the others go home
   if (outcome.chosen && !stop_on_interrupt()) {
     find_slopes(outcome, *model, arguments.threads);
     try_tolerances(outcome, *model, arguments.threads, arguments.samples);
@@ -275,6 +323,7 @@ void add_optimise(CLI::App& app, Context& context) {
                "  zwidth optimise mine.toml --set search.generations=50 -o out\n"
                "  zwidth optimise mine.toml --resume                    goes on from its checkpoint\n"
                "  zwidth optimise delta-drive --weights \"footprint=0.2\"\n"
+               "  mpirun -np 16 zwidth optimise delta-drive             on a cluster\n"
                "  zwidth report optimise/delta-drive/chosen.toml");
   auto arguments = std::make_shared<OptimiseArguments>();
   verb->add_option("STUDY", arguments->study,

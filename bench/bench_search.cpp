@@ -197,12 +197,13 @@ void compare_fronts(int seeds, int generations) {
 
 int main(int argc, char** argv) {
   const bool quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
+  const int rounds = quick ? 1 : std::min(9, bench::options_of(argc, argv).rounds);
   const long per_us = calibrate();
   compare_fronts(quick ? 1 : 20, quick ? 5 : 100);
   for (const int population : quick ? std::vector<int>{100} : std::vector<int>{100, 300, 400}) {
     for (const double cost : {0.0, 1.0, 100.0}) {
       const bool slow = cost > 10.0;
-      compare(population, cost, per_us, quick ? 1 : 9, quick ? 1 : slow ? 10 : 40);
+      compare(population, cost, per_us, rounds, quick ? 1 : slow ? 10 : 40);
     }
   }
   return 0;

@@ -1,6 +1,7 @@
 #include "zwidth/design/sensitivity.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -115,6 +116,37 @@ Sensitivity sensitivity(const BatchEvaluation& evaluate, std::span<const double>
     }
   }
   return result;
+}
+
+LinearSpread linear_spread(std::span<const double> slope, std::span<const double> size) {
+  const std::size_t variables = size.size();
+  assert(variables > 0 && variables <= 24 && slope.size() % variables == 0);
+  const std::size_t outcomes = slope.size() / variables;
+  LinearSpread spread;
+  std::vector<double> error(outcomes);
+  for (std::size_t o = 0; o < outcomes; ++o) {
+    double variance = 0.0;
+    for (std::size_t v = 0; v < variables; ++v) variance += std::pow(slope[o * variables + v] * size[v], 2);
+    spread.deviation.push_back(std::sqrt(variance));
+  }
+  // Corners in the order of Gray's code, each one sign away from the last.
+  std::vector<double> sign(variables, 1.0);
+  for (std::size_t o = 0; o < outcomes; ++o) {
+    for (std::size_t v = 0; v < variables; ++v) error[o] += slope[o * variables + v] * size[v];
+  }
+  for (std::uint32_t corner = 0;;) {
+    double squares = 0.0;
+    for (const double value : error) squares += value * value;
+    if (corner == 0 || std::sqrt(squares) > spread.worst) {
+      spread.worst = std::sqrt(squares);
+      spread.worst_sign = sign;
+    }
+    if (++corner == 1u << (variables - 1)) break;
+    const std::size_t v = 1 + static_cast<std::size_t>(std::countr_zero(corner));
+    sign[v] = -sign[v];
+    for (std::size_t o = 0; o < outcomes; ++o) error[o] += 2.0 * sign[v] * slope[o * variables + v] * size[v];
+  }
+  return spread;
 }
 
 double Tolerance::deviation(double nominal) const {

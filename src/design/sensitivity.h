@@ -28,6 +28,17 @@ struct Sensitivity {
 Sensitivity sensitivity(const BatchEvaluation& evaluate, std::span<const double> design,
                         std::span<const double> steps, std::size_t outcomes);
 
+/// What errors of the variables do to outcomes that follow their slopes.
+struct LinearSpread {
+  std::vector<double> deviation;  ///< standard deviation of each outcome, for independent errors
+  double worst = 0.0;  ///< largest Euclidean norm of the outcomes' errors, each variable off by its size
+  std::vector<double> worst_sign;  ///< +1 or -1 of each variable there, the first +1
+};
+/// S Sigma S^T and the worst corner of the box of errors, for `slope` as `Sensitivity` has it and an error
+/// `size` per variable: the standard deviation of the one, half the width of the other. REQUIRES: 24 variables
+/// at most (all 2^(n-1) corners are tried), slope.size() a multiple of their number.
+LinearSpread linear_spread(std::span<const double> slope, std::span<const double> size);
+
 /// How a quantity of a made part lies about its nominal value.
 struct Tolerance {
   enum class Spread { uniform, normal };

@@ -44,6 +44,25 @@ TEST(Sensitivity, OneSideIsEnoughAndNoneIsNaN) {
   EXPECT_TRUE(std::isnan(s.slope[1]));
 }
 
+TEST(Sensitivity, WorstCornerIsTheWorstOfAll) {
+  const std::vector<double> slope = {1.0, -2.0, 0.5, 3.0, 1.0, -1.0}, size = {0.1, 0.2, 0.3};
+  const LinearSpread spread = linear_spread(slope, size);
+  EXPECT_NEAR(spread.deviation[0], std::sqrt(0.01 + 0.16 + 0.0225), 1e-15);
+  EXPECT_NEAR(spread.deviation[1], std::sqrt(0.09 + 0.04 + 0.09), 1e-15);
+  double worst = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    double error[2] = {0.0, 0.0};
+    for (std::size_t v = 0; v < 3; ++v) {
+      const double by = (corner >> v & 1) != 0 ? size[v] : -size[v];
+      error[0] += slope[v] * by;
+      error[1] += slope[3 + v] * by;
+    }
+    worst = std::max(worst, std::hypot(error[0], error[1]));
+  }
+  EXPECT_NEAR(spread.worst, worst, 1e-15);
+  EXPECT_EQ(spread.worst_sign[0], 1.0);
+}
+
 TEST(Sensitivity, SpreadOfALinearFigureIsThatOfItsSlopes) {
   const std::vector<double> design = {2.0, 5.0};
   const std::vector<Tolerance> tolerances = {

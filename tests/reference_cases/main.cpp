@@ -66,6 +66,8 @@ std::vector<double> Inputs::list(const std::string& key) const {
   return values;
 }
 
+std::size_t Inputs::count(const std::string& key) const { return required(values_, key).size(); }
+
 bool Inputs::flag(const std::string& key) const {
   return required(values_, key).get<bool>();
 }
@@ -233,6 +235,7 @@ int run(const std::vector<std::string>& files) {
   add_r_cube_elastic(quantities);
   add_seven_dof(quantities);
   add_pneumatic(quantities);
+  add_design(quantities);
   Tally tally;
   for (const std::string& file : files) {
     std::ifstream stream(file);

@@ -31,7 +31,8 @@ class Inputs {
   int integer(const std::string& key) const;
   /// Three numbers; a single one stands for three equal ones.
   Vector3 vector(const std::string& key) const;
-  double degrees(const std::string& key) const;  ///< given in deg, in rad
+  std::size_t count(const std::string& key) const;  ///< elements of an array, rows of a nested one
+  double degrees(const std::string& key) const;     ///< given in deg, in rad
   /// An array of numbers of any length; nested ones row by row.
   std::vector<double> list(const std::string& key) const;
   bool flag(const std::string& key) const;
@@ -67,5 +68,6 @@ void add_r_cube(Quantities& quantities);
 void add_r_cube_elastic(Quantities& quantities);
 void add_seven_dof(Quantities& quantities);
 void add_pneumatic(Quantities& quantities);
+void add_design(Quantities& quantities);
 
 }  // namespace zwidth::reference

@@ -198,6 +198,7 @@ void compare_fronts(int seeds, int generations) {
 int main(int argc, char** argv) {
   const bool quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
   const int rounds = quick ? 1 : std::min(9, bench::options_of(argc, argv).rounds);
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // a long run shows its tables as they come
   const long per_us = calibrate();
   compare_fronts(quick ? 1 : 20, quick ? 5 : 100);
   for (const int population : quick ? std::vector<int>{100} : std::vector<int>{100, 300, 400}) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <limits>
 #include <muParser.h>
+#include <mutex>
 #include <optional>
 
 #include "zwidth/description/problem.h"
@@ -119,6 +120,12 @@ double sign(double value) {
   return static_cast<double>(value > 0.0) - static_cast<double>(value < 0.0);
 }
 
+// muParser keeps its locale in one place for all parsers, and writes it whenever one is made.
+std::mutex& making() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 void set_up(mu::Parser& parser) {
   parser.ResetLocale();
   parser.DefineNameChars(kNameCharacters);
@@ -139,6 +146,7 @@ ParsedExpression parse_expression(std::string_view text) {
   ParsedExpression parsed;
   const std::string plain = without_units(text, parsed);
   if (!parsed) return parsed;
+  const std::scoped_lock lock(making());
   try {
     mu::Parser parser;
     set_up(parser);
@@ -163,9 +171,10 @@ struct Expression::Parser {
   mu::Parser parser;
 };
 
-Expression::Expression(std::string_view text, const std::function<double*(const std::string& name)>& number)
-    : parser_(std::make_unique<Parser>()) {
+Expression::Expression(std::string_view text, const std::function<double*(const std::string& name)>& number) {
   ParsedExpression parsed = parse_expression(text);
+  const std::scoped_lock lock(making());
+  parser_ = std::make_unique<Parser>();
   mu::Parser& parser = parser_->parser;
   set_up(parser);
   parser.SetExpr(without_units(text, parsed));

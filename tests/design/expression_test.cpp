@@ -1,8 +1,11 @@
 #include "zwidth/design/expression.h"
 
+#include <atomic>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <map>
+#include <thread>
+#include <vector>
 
 namespace zwidth {
 namespace {
@@ -54,6 +57,22 @@ TEST(Expression, HasNoValueWhereThereIsNone) {
   EXPECT_TRUE(std::isnan(value("sqrt(x)", {{"x", -1.0}})));
   EXPECT_TRUE(std::isnan(value("acos(x)", {{"x", 1.5}})));
   EXPECT_TRUE(std::isnan(value("0*x", {{"x", NAN}})));
+}
+
+TEST(Expression, ManyThreadsMayMakeTheirOwn) {
+  std::atomic<int> wrong = 0;
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&wrong, t] {
+      double x = t;
+      for (int i = 0; i < 200; ++i) {
+        const Expression twice("2*x + 1 mm", [&](const std::string&) { return &x; });
+        if (std::abs(twice() - (2.0 * x + 1e-3)) > 1e-12) ++wrong;
+      }
+    });
+  }
+  for (std::thread& one : threads) one.join();
+  EXPECT_EQ(wrong, 0);
 }
 
 TEST(Expression, SaysWhatIsWrong) {

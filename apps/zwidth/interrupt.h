@@ -4,7 +4,8 @@
 
 namespace zwidth {
 
-/// From now on Ctrl-C sets the returned flag, once; a second Ctrl-C ends the program as usual.
+/// From now on Ctrl-C, or the SIGTERM that launchers of parallel jobs make of it, sets the returned flag, once;
+/// a second one ends the program as usual.
 const std::atomic<bool>& stop_on_interrupt();
 
 }  // namespace zwidth

@@ -310,8 +310,9 @@ std::string chosen_device(const StudyOutcome& outcome, const StudyModel& model) 
   StudyEvaluator evaluator(model);
   const std::string source = fmt::format("chosen: by the study {}", study.name);
   Description device = evaluator.description(outcome.design(*outcome.chosen), source);
-  device.title = fmt::format("{}, designed by the study {}", device.title, study.name);
-  device.name = fmt::format("{}-{}", device.name, study.name);
+  device.source = fmt::format("{}, from the device {} ({})", source, device.name, device.source);
+  device.title = study.title;
+  device.name = study.name;
   std::ostringstream text;
   write_description(device, text, catalogue());
   return text.str();

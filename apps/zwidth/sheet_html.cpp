@@ -52,6 +52,7 @@ figure.card svg{margin:4px 0}
 figcaption{font-size:13.5px;color:var(--muted);margin-top:auto;line-height:1.45}
 figure b{font-size:14.5px}
 .figures{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,330px),1fr));gap:16px;margin:16px 0;align-items:stretch}
+.figures.one{grid-template-columns:minmax(0,560px)}
 .figures.three{grid-template-columns:repeat(auto-fit,minmax(min(100%,280px),1fr))}
 .tiles{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(46%,200px),1fr));gap:12px;margin:16px 0}
 .tile{background:var(--card);border:1px solid var(--line);border-radius:10px;padding:12px 14px}

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sstream>
 
+#include "figure/parallel.h"
 #include "figure/plot.h"
 #include "optimise/outcome.h"
 #include "sheet_figures.h"
@@ -113,43 +114,59 @@ std::vector<SheetFigure> outcome_figures(const StudyOutcome& outcome, const Stud
     }
   }
   if (outcome.front.size() > 1) {
-    // Everything from 0 to 1 over its own range along the front.
-    std::vector<std::string> names;
-    std::vector<std::vector<double>> columns;
-    const auto column = [&](const std::string& name, auto value) {
-      std::vector<double> values;
-      for (const DesignSheet& sheet : outcome.front) values.push_back(value(sheet));
-      const auto [low, high] = std::minmax_element(values.begin(), values.end());
-      const double least = *low, width = *high - *low;
-      for (double& one : values) one = width > 0.0 ? (one - least) / width : 0.5;
-      names.push_back(name);
-      columns.push_back(std::move(values));
+    // Every figure over its own range along the set, the better end of an objective up.
+    std::vector<std::size_t> rows;
+    const std::size_t step = outcome.front.size() / kMostLines + 1;
+    for (std::size_t row = 0; row < outcome.front.size(); ++row) {
+      if (row % step == 0 || row == outcome.chosen) rows.push_back(row);
+    }
+    std::vector<ParallelAxis> axes;
+    const auto add = [&](const std::string& name, bool strong, bool small_is_better, auto value, auto text) {
+      double least = HUGE_VAL, most = -HUGE_VAL;
+      for (const DesignSheet& sheet : outcome.front) {
+        least = std::min(least, value(sheet));
+        most = std::max(most, value(sheet));
+      }
+      ParallelAxis axis{.name = name, .low = text(least), .high = text(most), .shares = {}, .strong = strong};
+      if (small_is_better) std::swap(axis.low, axis.high);
+      for (const std::size_t row : rows) {
+        const double share = most > least ? (value(outcome.front[row]) - least) / (most - least) : 0.5;
+        axis.shares.push_back(small_is_better ? 1.0 - share : share);
+      }
+      axes.push_back(std::move(axis));
     };
     for (std::size_t v = 0; v < study.variables.size(); ++v) {
-      column(study.variables[v].name, [v](const DesignSheet& sheet) { return sheet.variables[v].value; });
+      add(
+          study.variables[v].name, false, false,
+          [v](const DesignSheet& sheet) { return sheet.variables[v].value; },
+          [&](double value) {
+            DesignValue shown = outcome.front.front().variables[v];
+            shown.value = value;
+            if (!shown.part.empty()) shown.part = fmt::format("part {}", value + 1.0);
+            return value_text(shown);
+          });
     }
     for (std::size_t o = 0; o < n; ++o) {
-      column(study.objectives[o].name, [o](const DesignSheet& sheet) { return sheet.objectives[o]; });
+      add(
+          study.objectives[o].name, true, !study.objectives[o].maximise,
+          [o](const DesignSheet& sheet) { return sheet.objectives[o]; },
+          [](double value) { return number(value, 3); });
     }
-    Plot plot(2.0 * kWidth, kHeight,
-              {.label = "variables, then objectives", .range = {0.0, static_cast<double>(names.size() - 1)}},
-              {.label = "share of the range along the set", .range = {0.0, 1.0}});
-    const auto trace = [&](std::size_t row) {
-      std::vector<Point2> line;
-      for (std::size_t c = 0; c < columns.size(); ++c)
-        line.push_back({static_cast<double>(c), columns[c][row]});
-      return line;
-    };
-    const std::size_t step = outcome.front.size() / kMostLines + 1;
-    for (std::size_t row = 0; row < outcome.front.size(); row += step) plot.line(trace(row), 1);
-    if (outcome.chosen) plot.line(trace(*outcome.chosen), 2, "chosen");
-    for (std::size_t c = 0; c < names.size(); ++c) plot.vertical(static_cast<double>(c), names[c]);
-    figures.push_back(
-        {.id = "parallel-coordinates",
-         .section = "parallel",
-         .title = "Parallel coordinates",
-         .caption = "One line per design of the set. Lines that cross between two columns mean a trade-off.",
-         .svg = plot.svg("Parallel coordinates of the Pareto set")});
+    std::optional<std::size_t> marked;
+    if (outcome.chosen) {
+      marked = static_cast<std::size_t>(std::find(rows.begin(), rows.end(), *outcome.chosen) - rows.begin());
+    }
+    if (axes.size() > 1) {
+      const double width = std::max(2.0 * kWidth, 96.0 * static_cast<double>(axes.size()));
+      const std::string title = "Parallel coordinates";
+      figures.push_back(
+          {.id = "parallel-coordinates",
+           .section = "parallel",
+           .title = title,
+           .caption = "One line per design of the set, the chosen one thick. Objectives stand at the right, "
+                      "their better end up: lines that cross there are a trade-off.",
+           .svg = parallel_coordinates(width, kHeight, axes, marked, title)});
+    }
   }
   std::vector<Point2> growth;
   for (const Generation& one : outcome.result.history) {
@@ -222,6 +239,12 @@ std::string page(const StudyOutcome& outcome, const StudyModel& model,
     }
     if (!cards.empty()) body += fmt::format("<div class=\"figures {}\">{}</div>\n", kind, cards);
   };
+  // A figure by itself would grow as wide as the page.
+  const auto show_few = [&](const std::string& of_section) {
+    const auto count = std::count_if(figures.begin(), figures.end(),
+                                     [&](const SheetFigure& figure) { return figure.section == of_section; });
+    show(of_section, count == 1 ? "one" : "");
+  };
   const auto section = [&](const char* id, const std::string& title) {
     body += fmt::format("<section><h2 id=\"{}\">{}</h2>\n", id, escaped(title));
   };
@@ -260,7 +283,7 @@ std::string page(const StudyOutcome& outcome, const StudyModel& model,
     body += fmt::format("<p>{} designs remain that no other beats in all objectives at once.</p>\n",
                         outcome.front.size());
     body += trade_off(outcome, study);
-    show("front");
+    show_few("front");
     show("parallel");
     body += "</section>\n";
   }
@@ -285,7 +308,7 @@ std::string page(const StudyOutcome& outcome, const StudyModel& model,
                         outcome.options.population, outcome.options.seed);
   }
   body += said + ".</p>\n";
-  show("search");
+  show_few("search");
   body += "</section>\n";
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "

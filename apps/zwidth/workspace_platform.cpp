@@ -6,6 +6,7 @@
 #include "at/goal.h"
 #include "gnuplot.h"
 #include "interrupt.h"
+#include "mechanics.h"
 #include "sheet_arm.h"
 #include "workspace_verb.h"
 
@@ -55,6 +56,8 @@ WorkspaceMap map_of(const PoseWorkspace& workspace) {
 
 int platform_workspace(const WorkspaceArguments& arguments, const Model& model, double spacing,
                        const Terminal& terminal) {
+  if (arguments.of != "condition_number")
+    throw InputError(fmt::format("--of {}: is for tools that do not turn; leave it out", arguments.of));
   const Mechanism& mechanism = model.mechanism;
   PoseWorkspaceOptions options{.spacing = spacing};
   if (arguments.figure.empty()) options.slice_points = 0;
@@ -104,11 +107,15 @@ int platform_workspace(const WorkspaceArguments& arguments, const Model& model, 
   if (answered && !arguments.map.empty()) write_map(map_of(workspace), arguments.map);
   if (answered && !arguments.figure.empty() && !workspace.slices.empty())
     draw(model, workspace, arguments.figure);
+  std::optional<MechanicalPostures> mechanics;
+  if (answered && model.mechanism.linear_rows() > 0)
+    mechanics = sweep_mechanics_of_postures(model.mechanism, model.drives);
   if (arguments.json) {
     Json document;
     document["device"] = model.description.name;
     document["complete"] = true;
     document.update(pose_json(workspace));
+    document["mechanics"] = mechanics ? mechanics_json(*mechanics) : Json(nullptr);
     print_json(document);
     return answered ? kDone : kNo;
   }
@@ -120,6 +127,7 @@ int platform_workspace(const WorkspaceArguments& arguments, const Model& model, 
     sheet.heading("Turned at one place");
     for (const ArmFact& fact : turning_facts(workspace.turning)) sheet.row(fact.name, fact.value, fact.note);
   }
+  if (mechanics) print_mechanics(*mechanics, sheet);
   if (!arguments.map.empty() && answered) sheet.paragraph("map: " + arguments.map, 2, Tint::dim);
   if (!arguments.figure.empty() && answered) sheet.paragraph("figure: " + arguments.figure, 2, Tint::dim);
   print(sheet.text());

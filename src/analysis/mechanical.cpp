@@ -18,8 +18,8 @@
 namespace zwidth {
 namespace {
 
-constexpr double kNothing = 1e-9;    // share of the largest mass that counts as none
-constexpr double kSingular = 1e-12;  // of the largest mobility: none at all
+constexpr double kNothing = 1e-9;   // share of the largest mass that counts as none
+constexpr double kSingular = 1e-6;  // of the largest mobility: too heavy to be moved at all
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 void put(MechanicalValues& values, MechanicalFigure first, int offset, double value) {

@@ -55,7 +55,8 @@ std::optional<KnownStiffness> known_stiffness(const Posture& posture, const Driv
 
 /// Masses are known if every joint moves some (`drive_inertia` counts), frequencies if links and platform alone
 /// do, the acceleration if every joint that is not moved by the hand has its drive. Stiffness has no value
-/// where the tool is free, nor a mass where it cannot move (it is infinite).
+/// where the tool is free, nor a mass where it cannot move (beyond
+/// a million times the lightest counts as infinite).
 MechanicalValues mechanical_figures(const Posture& posture, const Drives& drives);
 
 /// Over the points of a lattice in the workspace.

@@ -49,6 +49,14 @@ TEST(WorkspaceMechanics, WhatTheSourceDoesNotGiveIsSaid) {
   }
 }
 
+TEST(WorkspaceMechanics, OfAPlatformThatTurnsIsOverPostures) {
+  const json mechanics =
+      answer({"workspace", ZWIDTH_EXAMPLES "/devices/hexapod.toml", "--grid", "20mm", "--json"})["mechanics"];
+  EXPECT_GT(mechanics["postures"].get<int>(), 100);
+  EXPECT_GT(mechanics["figures"]["lightest"]["min"].get<double>(), 0.0);
+  EXPECT_TRUE(mechanics["of"].is_null());
+}
+
 TEST(WorkspaceMechanics, AMapHasThem) {
   const ScratchDirectory scratch;
   const std::string file = scratch.file("map.csv", "");

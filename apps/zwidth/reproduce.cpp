@@ -46,6 +46,11 @@ int missed(const Reproduction& reproduction) {
                                         [](const ReproducedFigure& figure) { return !figure.ok(); }));
 }
 
+int fallen_short(const Reproduction& reproduction) {
+  return static_cast<int>(std::count_if(reproduction.search.begin(), reproduction.search.end(),
+                                        [](const SearchFinding& finding) { return !finding.ok(); }));
+}
+
 void print_figures(Sheet& sheet, const Reproduction& reproduction) {
   std::string heading;
   std::vector<std::vector<std::string>> rows;
@@ -76,6 +81,41 @@ void print_figures(Sheet& sheet, const Reproduction& reproduction) {
   flush();
 }
 
+std::string expected(const SearchFinding& finding) {
+  const auto shown = [&](double value) { return fmt::format("{:.{}f}", value, finding.decimals); };
+  if (finding.at_least && finding.at_most) {
+    return *finding.at_least == *finding.at_most
+               ? shown(*finding.at_least)
+               : fmt::format("{} to {}", shown(*finding.at_least), shown(*finding.at_most));
+  }
+  if (finding.at_least) return fmt::format("at least {}", shown(*finding.at_least));
+  if (finding.at_most) return fmt::format("at most {}", shown(*finding.at_most));
+  return "";
+}
+
+void print_search(Sheet& sheet, const Reproduction& reproduction) {
+  std::string heading;
+  std::vector<std::vector<std::string>> rows;
+  const auto flush = [&] {
+    if (rows.empty()) return;
+    sheet.heading(heading);
+    sheet.table({"searched again", "computed", "unit", "expected", ""}, rows);
+    rows.clear();
+  };
+  for (const SearchFinding& finding : reproduction.search) {
+    if (finding.source != heading) {
+      flush();
+      heading = finding.source;
+    }
+    const std::string judged = expected(finding);
+    rows.push_back({finding.what, fmt::format("{:.{}f}", finding.value, finding.decimals), finding.unit, judged,
+                    judged.empty() ? ""
+                    : finding.ok() ? "ok"
+                                   : "MISS"});
+  }
+  flush();
+}
+
 void print_errata(Sheet& sheet, const std::string& heading, const std::vector<Erratum>& errata) {
   if (errata.empty()) return;
   sheet.heading(heading);
@@ -89,6 +129,7 @@ std::string text(const Reproduction& reproduction, const Terminal& terminal) {
   Sheet sheet(terminal);
   sheet.title(reproduction.device, reproduction.source);
   print_figures(sheet, reproduction);
+  print_search(sheet, reproduction);
   print_errata(sheet, "Stated, but not reproduced", reproduction.not_reproduced);
   print_errata(sheet, "Errata", reproduction.errata);
   sheet.heading("Measured only");
@@ -99,6 +140,12 @@ std::string text(const Reproduction& reproduction, const Terminal& terminal) {
                  ? fmt::format("{}: all {} published figures reproduced.", reproduction.device, all)
                  : fmt::format("{}: {} of {} published figures differ beyond their tolerance (MISS above).",
                                reproduction.device, bad, all));
+  if (const int found = static_cast<int>(reproduction.search.size()); found > 0) {
+    const int short_of = fallen_short(reproduction);
+    sheet.line(short_of == 0 ? fmt::format("{}: our searches find what they should.", reproduction.device)
+                             : fmt::format("{}: {} of {} findings of our searches fall short (MISS above).",
+                                           reproduction.device, short_of, found));
+  }
   return sheet.text();
 }
 
@@ -134,12 +181,26 @@ Json json(const Reproduction& reproduction) {
     }
     figures.push_back(std::move(one));
   }
+  Json search = Json::array();
+  for (const SearchFinding& finding : reproduction.search) {
+    Json one;
+    one["id"] = finding.id;
+    one["source"] = finding.source;
+    one["what"] = finding.what;
+    one["unit"] = finding.unit.empty() ? "1" : finding.unit;
+    one["computed"] = json_number(finding.value);
+    if (finding.at_least) one["at_least"] = *finding.at_least;
+    if (finding.at_most) one["at_most"] = *finding.at_most;
+    one["ok"] = finding.ok();
+    search.push_back(std::move(one));
+  }
   Json document;
   document["device"] = reproduction.device;
   document["source"] = reproduction.source;
   document["reproduced"] = static_cast<int>(reproduction.figures.size()) - missed(reproduction);
   document["missed"] = missed(reproduction);
   document["figures"] = std::move(figures);
+  document["search"] = std::move(search);
   document["not_reproduced"] = json(reproduction.not_reproduced);
   document["errata"] = json(reproduction.errata);
   document["measured_only"] = reproduction.measured_only;
@@ -154,7 +215,7 @@ int reproduce(const Arguments& arguments, const Terminal& terminal) {
     if (!arguments.device.empty() && !covers(source, arguments.device)) continue;
     found = true;
     const Reproduction reproduction = source.reproduce(catalogue());
-    bad += missed(reproduction);
+    bad += missed(reproduction) + fallen_short(reproduction);
     if (arguments.json) {
       documents.push_back(json(reproduction));
     } else {

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "reproduction.h"
+#include "study.h"
 
 #include "zwidth/analysis/five_bar_search.h"
 #include "zwidth/description/read.h"
@@ -158,6 +159,18 @@ void search_figures(Figures& figures, const FiveBarSearchResult& published, cons
   figures.add("F6.a3", "a3 with the fewest points", kCentimetreUnit, 0, 3, best->first);
 }
 
+// The same by the study, whose search knows nothing of five-bars.
+void study_figures(Figures& figures) {
+  const StudyRun found = search_study("five-bar-grid", {});
+  const DesignSheet best = StudyEvaluator(*found.model).sheet(found.design(0));  // the fewest points
+  figures.under("Section 5.1: the search, by the study five-bar-grid");
+  constexpr std::array<double, 3> kSelected = {10, 15, 3};
+  for (std::size_t i = 0; i < 3; ++i) {
+    figures.add("S5.1.study_" + best.variables[i].name, best.variables[i].name + " of the optimum",
+                kCentimetreUnit, 0, kSelected[i], best.variables[i].value);
+  }
+}
+
 std::vector<Erratum> not_reproduced(const FiveBarGeometry& g, const ConditionCensus& census) {
   const PolarSampling circles{.radius_step = 0.005, .angle_step = kDegree};
   PolarSampling upper_halves = circles;
@@ -246,6 +259,7 @@ Reproduction reproduce_five_bar(const Catalogue& catalogue) {
   Figures figures("five-bar");
   kinematic_figures(figures, description, g);
   search_figures(figures, published, fine);
+  study_figures(figures);
   return {
       .device = "five-bar",
       .source = "Singh, Saha & Manivannan, Synthesis of Two Degrees-of-Freedom Haptic Device",

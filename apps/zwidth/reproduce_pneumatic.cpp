@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "reproduction.h"
+#include "study.h"
 
 #include "zwidth/actuation/pneumatic_drive.h"
 #include "zwidth/analysis/workspace.h"
@@ -201,6 +202,22 @@ std::vector<Erratum> errata() {
   };
 }
 
+// No linkage can do better than the work that the load takes, over the stroke.
+SearchFinding least_push() {
+  const StudyRun found = search_study("pneumatic-arm-cylinder", {});
+  constexpr double weight = 8.75, distance = 0.110, stroke = 0.0125;  // as the study has them [N], [m]
+  const double half_range = std::numbers::pi / 6.0;
+  const double bound = 2.0 * weight * distance * std::sin(half_range) / stroke;
+  return {.id = "pneumatic.search.push",
+          .source = "Section 3.1.4: the arm and its cylinder, by the study pneumatic-arm-cylinder",
+          .what = fmt::format("smallest peak of the cylinder's force, {:.1f} N, over 2 F l_F sin θ_m/stroke",
+                              found.objectives(0)[0]),
+          .decimals = 3,
+          .value = found.objectives(0)[0] / bound,
+          .at_least = 1.0,
+          .at_most = 1.01};
+}
+
 }  // namespace
 
 Reproduction reproduce_pneumatic(const Catalogue& catalogue) {
@@ -211,6 +228,7 @@ Reproduction reproduce_pneumatic(const Catalogue& catalogue) {
   return {.device = "pneumatic",
           .source = "Akhoondi Asadi 2017, University of Manitoba",
           .figures = figures.take(),
+          .search = {least_push()},
           .not_reproduced = not_reproduced(catalogue),
           .errata = errata(),
           .measured_only = {

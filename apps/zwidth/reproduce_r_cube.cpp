@@ -5,6 +5,7 @@
 
 #include "r_cube_tables.h"
 #include "reproduce_r_cube_elastic.h"
+#include "reproduce_r_cube_search.h"
 #include "reproduction.h"
 
 #include "zwidth/analysis/r_cube_synthesis.h"
@@ -266,11 +267,13 @@ Reproduction reproduce_r_cube(const Catalogue& catalogue) {
   section_figures(figures);
   device_figures(figures, device);
   r_cube_elastic_figures(figures, description);
+  r_cube_section_study(figures);
   std::vector<Erratum> misses = not_reproduced(device);
   for (Erratum& one : r_cube_elastic_misses(description)) misses.push_back(std::move(one));
   return {.device = "r-cube",
           .source = "Görgülü 2018",
           .figures = figures.take(),
+          .search = r_cube_search_findings(),
           .not_reproduced = std::move(misses),
           .errata = errata(),
           .measured_only = {"Figures 7.5-7.19, which have no numbers"}};

@@ -8,6 +8,10 @@ bool ReproducedFigure::ok() const {
   return std::abs(difference()) <= tolerance;
 }
 
+bool SearchFinding::ok() const {
+  return std::isfinite(value) && value >= at_least.value_or(-HUGE_VAL) && value <= at_most.value_or(HUGE_VAL);
+}
+
 ReproducedFigure& Figures::add(const std::string& id, const std::string& what, const PrintedUnit& unit,
                                int decimals, double printed, double computed_si) {
   ReproducedFigure figure;

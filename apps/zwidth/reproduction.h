@@ -51,10 +51,25 @@ struct Erratum {
   std::string reason;   ///< how that is known
 };
 
+/// What comes out when we search where a source has searched.
+struct SearchFinding {
+  std::string id;      ///< stable: "r-cube.search.dominated"
+  std::string source;  ///< heading it stands under
+  std::string what;    ///< in words
+  std::string unit;    ///< SI; empty for numbers
+  int decimals = 0;    ///< shown
+  double value = 0.0;  ///< [SI]
+  std::optional<double> at_least,
+      at_most;  ///< what a search that has converged reaches; neither: for information
+
+  bool ok() const;
+};
+
 struct Reproduction {
   std::string device;
   std::string source;
   std::vector<ReproducedFigure> figures;   ///< in the source's order
+  std::vector<SearchFinding> search = {};  ///< beside the source's own search
   std::vector<Erratum> not_reproduced;     ///< numbers that the source's own data do not give
   std::vector<Erratum> errata;             ///< misprints and slips, already corrected in the figures above
   std::vector<std::string> measured_only;  ///< what only a bench can tell

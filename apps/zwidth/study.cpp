@@ -5,6 +5,8 @@
 
 #include "context.h"
 
+#include "zwidth/design/workers.h"
+
 namespace zwidth {
 
 bool names_study(const std::string& study) {
@@ -26,6 +28,47 @@ std::unique_ptr<StudyModel> read_study_model(const std::string& study,
     return study_problems(one, device_of(one), catalogue());
   });
   return std::make_unique<StudyModel>(read, device_of(read), catalogue());
+}
+
+BatchEvaluation study_evaluation(const StudyModel& model, int threads, const std::atomic<bool>* cancel) {
+  const SearchProblem problem = model.search_problem();
+  return on_workers(problem.variables.size(), problem.outcome_size(),
+                    [&model]() -> DesignEvaluation {
+                      auto evaluator = std::make_shared<StudyEvaluator>(model);
+                      return [evaluator](std::span<const double> row, std::span<double> outcome) {
+                        evaluator->evaluate(row, outcome);
+                      };
+                    },
+                    {.threads = threads, .cancel = cancel});
+}
+
+SearchOptions study_search_options(const StudyModel& model) {
+  const Study& study = model.study();
+  SearchOptions options;
+  options.algorithm = model.algorithm();
+  options.population = study.search.population;
+  if (options.algorithm == SearchAlgorithm::grid) options.population = std::max(options.population, 1000);
+  options.generations = study.search.generations;
+  options.seed = static_cast<std::uint32_t>(study.search.seed);
+  return options;
+}
+
+std::span<const double> StudyRun::design(std::size_t front_row) const {
+  const std::size_t width = problem.variables.size();
+  return std::span(result.designs).subspan(result.front[front_row] * width, width);
+}
+
+std::span<const double> StudyRun::objectives(std::size_t front_row) const {
+  return std::span(result.outcomes)
+      .subspan(result.front[front_row] * problem.outcome_size(), problem.objectives.size());
+}
+
+StudyRun search_study(const std::string& study, const std::vector<std::string>& overrides) {
+  StudyRun found{.model = read_study_model(study, overrides)};
+  found.problem = found.model->search_problem();
+  found.problem.evaluate = study_evaluation(*found.model, 0, nullptr);
+  found.result = search(found.problem, study_search_options(*found.model));
+  return found;
 }
 
 }  // namespace zwidth

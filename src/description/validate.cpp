@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <initializer_list>
@@ -175,17 +176,31 @@ class Validator {
     constexpr int kSteps = 72;
     const double left_step = five_bar.left_range.width() / kSteps,
                  right_step = five_bar.right_range.width() / kSteps;
+    const double margin = 0.5 * five_bar.crank * (left_step + right_step);
+    const bool too_wide = five_bar.half_base >= five_bar.crank + five_bar.coupler;
+    struct Direction {
+      double x, y;
+    };
+    std::array<Direction, kSteps + 1> right{};
+    for (int j = 0; j <= kSteps; ++j) {
+      const double angle = five_bar.right_range.min + j * right_step;
+      right[static_cast<std::size_t>(j)] = {std::cos(angle), std::sin(angle)};
+    }
+    // From the middle of the left range outwards: what can close mostly does so there.
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i <= kSteps; ++i) {
-      const double left = five_bar.left_range.min + i * left_step;
-      for (int j = 0; j <= kSteps; ++j) {
-        const double right = five_bar.right_range.min + j * right_step;
-        const double across = 2.0 * five_bar.half_base + five_bar.crank * (std::cos(right) - std::cos(left));
-        least = std::min(least, std::hypot(across, five_bar.crank * (std::sin(right) - std::sin(left))));
+      const int from_middle = i % 2 == 0 ? i / 2 : -(i + 1) / 2;
+      const double angle = five_bar.left_range.middle() + from_middle * left_step;
+      const Direction left{std::cos(angle), std::sin(angle)};
+      double squared = std::numeric_limits<double>::infinity();
+      for (const Direction& one : right) {
+        const double across = 2.0 * five_bar.half_base + five_bar.crank * (one.x - left.x),
+                     along = five_bar.crank * (one.y - left.y);
+        squared = std::min(squared, across * across + along * along);
       }
+      least = std::min(least, std::sqrt(squared));
+      if (!too_wide && least - margin <= reach) return;
     }
-    const bool too_wide = five_bar.half_base >= five_bar.crank + five_bar.coupler;
-    if (!too_wide && least - 0.5 * five_bar.crank * (left_step + right_step) <= reach) return;
     wrong("mechanism", "",
           fmt::format(
               "never closes: everywhere in left_range and right_range the elbows are {:.4g} m or more apart, "

@@ -1,5 +1,6 @@
 #include "zwidth/mechanism/beam_link.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <set>
@@ -106,6 +107,8 @@ std::optional<BeamLink> beam_link(const BeamDescription& beam, const Vector3& fr
 
 std::vector<Problem> beam_problems(const Description& description) {
   std::vector<Problem> problems;
+  const auto is_beam = [](const BodyDescription& body) { return body.beam.has_value(); };
+  if (std::none_of(description.bodies.begin(), description.bodies.end(), is_beam)) return problems;
   std::set<std::string> taken;  // links that are beams already
   Description one = description;
   for (std::size_t i = 0; i < description.bodies.size(); ++i) {

@@ -205,6 +205,13 @@ Ranks::~Ranks() {
   MPI_Finalize();
 }
 
+int Ranks::first_that(bool yes) const {
+  const int mine = yes ? rank_ : size_;
+  int first = size_;
+  MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  return first;
+}
+
 BatchEvaluation Ranks::spread(std::size_t variables, std::size_t outcomes, BatchEvaluation own) {
   assert(drives() && variables > 0 && outcomes > 0);
   auto dealer = std::make_shared<Dealer>(variables, outcomes, std::move(own), size_);

@@ -39,6 +39,10 @@ class Ranks {
   int size() const { return size_; }
   bool drives() const { return rank_ == 0; }
 
+  /// The first rank that says yes, `size()` if none does; the same on all ranks, which must all ask, before
+  /// rank 0 spreads anything. So that a mistake that all ranks make is reported by one.
+  int first_that(bool yes) const;
+
   /// On rank 0: an evaluation that deals rows out to all ranks as they come free, and does its share with
   /// `own`. Rows do not depend on who evaluates them, if `own` is the same everywhere. What throws on another
   /// rank comes back as NaN. Returns false if `own` does so on any rank; the others have then finished what

@@ -1,5 +1,6 @@
 #include "run_command.h"
 
+#include <csignal>
 #include <cstdlib>
 #include <fcntl.h>
 #include <fstream>
@@ -39,7 +40,8 @@ Outcome run(const std::vector<std::string>& arguments, const RunOptions& options
   const int out =
       options.output_file.empty() ? memory_file("") : open(options.output_file.c_str(), O_WRONLY | O_CLOEXEC);
   const int err = memory_file("");
-  std::vector<std::string> words{ZWIDTH_COMMAND};
+  std::vector<std::string> words = options.launcher;
+  words.emplace_back(ZWIDTH_COMMAND);
   words.insert(words.end(), arguments.begin(), arguments.end());
   // The first of two variables with one name counts.
   std::vector<std::string> variables = options.environment;
@@ -59,11 +61,20 @@ Outcome run(const std::vector<std::string>& arguments, const RunOptions& options
     dup2(out, 1);
     dup2(err, 2);
     if (!options.directory.empty() && chdir(options.directory.c_str()) != 0) _exit(126);
-    execve(ZWIDTH_COMMAND, argv.data(), environment.data());
+    execve(argv.front(), argv.data(), environment.data());
     _exit(127);
   }
   int status = 0;
-  waitpid(pid, &status, 0);
+  bool ended = false;
+  while (options.signal != 0 && !ended) {
+    ended = waitpid(pid, &status, WNOHANG) == pid;
+    if (!ended && options.signal_when()) {
+      kill(pid, options.signal);
+      break;
+    }
+    if (!ended) usleep(1000);
+  }
+  if (!ended) waitpid(pid, &status, 0);
   Outcome outcome;
   outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   if (options.output_file.empty()) outcome.out = contents_of(out);

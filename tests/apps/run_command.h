@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct RunOptions {
   std::string output_file;               ///< goes there instead of `out`
   std::filesystem::path directory;       ///< to run in; empty stays
   std::vector<std::string> environment;  ///< "NAME=VALUE", besides PATH, HOME and LANG
+  std::vector<std::string> launcher;     ///< runs the command; its first word is a path
+  int signal = 0;                        ///< to send to it, as soon as `signal_when` says so
+  std::function<bool()> signal_when;
 };
 
 Outcome run(const std::vector<std::string>& arguments, const RunOptions& options = {});

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
@@ -190,14 +191,6 @@ std::string identity_of(const StudyModel& model) {
   return text;
 }
 
-/// What evaluates designs in this process.
-BatchEvaluation own_evaluation(const StudyModel& model, const SearchProblem& problem, int threads) {
-  return spread_out(model, problem.variables.size(), problem.outcome_size(), threads,
-                    [](StudyEvaluator& evaluator, std::span<const double> row, std::span<double> result) {
-                      evaluator.evaluate(row, result);
-                    });
-}
-
 /// `ranks`: of an MPI job, if this is one.
 StudyOutcome run_search(const StudyModel& model, const OptimiseArguments& arguments, const fs::path& directory,
                         Ranks* ranks) {
@@ -207,18 +200,14 @@ StudyOutcome run_search(const StudyModel& model, const OptimiseArguments& argume
                                           : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   outcome.problem = model.search_problem();
   outcome.problem.identity = identity_of(model);
-  outcome.problem.evaluate = own_evaluation(model, outcome.problem, arguments.threads);
+  outcome.problem.evaluate = study_evaluation(model, arguments.threads, &stop_on_interrupt());
   if (ranks != nullptr) {
     outcome.workers *= ranks->size();
     outcome.problem.evaluate = ranks->spread(outcome.problem.variables.size(), outcome.problem.outcome_size(),
                                              outcome.problem.evaluate);
   }
+  outcome.options = study_search_options(model);
   SearchOptions& options = outcome.options;
-  options.algorithm = model.algorithm();
-  options.population = study.search.population;
-  if (options.algorithm == SearchAlgorithm::grid) options.population = std::max(options.population, 1000);
-  options.generations = study.search.generations;
-  options.seed = static_cast<std::uint32_t>(study.search.seed);
   options.checkpoint = directory / "checkpoint";
   options.checkpoint_seconds = arguments.checkpoint_seconds;
   options.resume = arguments.resume;
@@ -275,17 +264,30 @@ void refine_choice(StudyOutcome& outcome, const StudyModel& model) {
 
 int optimise(OptimiseArguments arguments, const Terminal& terminal) {
   const auto start = std::chrono::steady_clock::now();
-  const std::unique_ptr<StudyModel> model = read_study_model(arguments.study, arguments.overrides);
-  const std::map<std::string, double> weights = weights_of(arguments, model->study());
   std::optional<Ranks> ranks;
-  if (Ranks::started_by_launcher()) {
-    ranks.emplace();
+  if (Ranks::started_by_launcher()) ranks.emplace();
+  // Each rank reads the study; what is wrong with it is said once.
+  std::unique_ptr<StudyModel> model;
+  std::map<std::string, double> weights;
+  std::exception_ptr mistake;
+  try {
+    model = read_study_model(arguments.study, arguments.overrides);
+    weights = weights_of(arguments, model->study());
+  } catch (...) {
+    mistake = std::current_exception();
+  }
+  if (ranks) {
+    const int first = ranks->first_that(mistake != nullptr);
+    if (first < ranks->size() && first != ranks->rank()) return kInputWrong;
+  }
+  if (mistake != nullptr) std::rethrow_exception(mistake);
+  if (ranks) {
     // A launcher starts as many ranks as there are cores to use.
     if (arguments.threads == 0 && ranks->size() > 1) arguments.threads = 1;
     if (!ranks->drives()) {
       const SearchProblem problem = model->search_problem();
       ranks->serve(problem.variables.size(), problem.outcome_size(),
-                   own_evaluation(*model, problem, arguments.threads));
+                   study_evaluation(*model, arguments.threads, &stop_on_interrupt()));
       return kDone;
     }
   }

@@ -54,7 +54,9 @@ Estimate share_of(std::int64_t hits, std::int64_t samples) {
   const double z2 = kConfidence * kConfidence;
   const double centre = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
   const double width = kConfidence / (1.0 + z2 / n) * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n));
-  return {p, std::max(0.0, centre - width), std::min(1.0, centre + width)};
+  // The ends themselves, free of rounding.
+  return {p, hits == 0 ? 0.0 : std::max(0.0, centre - width),
+          hits == samples ? 1.0 : std::min(1.0, centre + width)};
 }
 
 OutcomeSpread spread_of(std::vector<double> values, std::int64_t samples) {

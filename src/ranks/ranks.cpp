@@ -201,6 +201,9 @@ Ranks::Ranks() {
 Ranks::~Ranks() {
   if (drives()) {
     for (int rank = 1; rank < size_; ++rank) send({}, rank, kHome);
+  } else if (!sent_home_) {
+    std::vector<double> nothing;
+    receive(wait_for_message(), nothing);
   }
   MPI_Finalize();
 }
@@ -226,7 +229,10 @@ void Ranks::serve(std::size_t variables, std::size_t outcomes, const BatchEvalua
   for (;;) {
     const MPI_Status status = wait_for_message();
     receive(status, work);
-    if (status.MPI_TAG == kHome) return;
+    if (status.MPI_TAG == kHome) {
+      sent_home_ = true;
+      return;
+    }
     const std::span<const double> designs = std::span<const double>(work).subspan(kWorkHead);
     const std::size_t count = designs.size() / variables;
     answer.assign(kOutcomeHead + count * outcomes, kNaN);

@@ -30,7 +30,8 @@ class Ranks {
 
   /// Starts MPI. Throws std::runtime_error if that fails, or was done before.
   Ranks();
-  /// Rank 0 sends the others home; then MPI is ended, which waits for all of them.
+  /// Rank 0 sends the others home, who wait for that even if they never served; then MPI is ended, which waits
+  /// for all of them.
   ~Ranks();
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;
@@ -56,6 +57,7 @@ class Ranks {
  private:
   int rank_ = 0;
   int size_ = 1;
+  bool sent_home_ = false;
 };
 
 }  // namespace zwidth

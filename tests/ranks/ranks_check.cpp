@@ -90,11 +90,15 @@ int main() {
     return 2;
   }
   Ranks ranks;
+  const int size = ranks.size();
+  expect(ranks.first_that(false) == size, "no rank says yes");
+  expect(ranks.first_that(ranks.rank() == size - 1) == size - 1, "the last rank says yes");
+  expect(ranks.first_that(true) == 0, "all say yes");
   SearchProblem problem = test::bnh();
   const BatchEvaluation own = own_evaluation(problem);
   if (!ranks.drives()) {
     ranks.serve(2, 4, own);
-    return 0;
+    return failures == 0 ? 0 : 1;
   }
   problem.evaluate = own;
   SearchProblem spread = problem;

@@ -76,6 +76,9 @@ Json farthest_json(const FarthestPosture& farthest) {
 Json conditioning_json(const PostureSweep& sweep) {
   return {{"postures", sweep.solved},
           {"translation", conditioning_json(sweep.translation)},
+          {"best_joints", sweep.translation_conditioning.count > 0
+                              ? json_array(sweep.translation_conditioning.max_at)
+                              : Json(nullptr)},
           {"rotation", conditioning_json(sweep.rotation)},
           {"homogeneous", conditioning_json(sweep.homogeneous)},
           {"characteristic_length", json_number(sweep.characteristic_length)}};
@@ -150,7 +153,8 @@ std::string share_text(const Share& share) {
 
 }  // namespace
 
-std::vector<PostureTable> arm_tables(const ArmSheet& arm, const std::vector<bool>& joint_slides) {
+std::vector<PostureTable> arm_tables(const ArmSheet& arm, const Mechanism& mechanism,
+                                     const std::vector<bool>& joint_slides) {
   const PostureSweep& sweep = arm.continuous;
   const std::string postures = fmt::format("{} postures spread evenly over the joint ranges", sweep.solved);
   std::vector<PostureTable> tables;
@@ -159,7 +163,9 @@ std::vector<PostureTable> arm_tables(const ArmSheet& arm, const std::vector<bool
                          postures + ". Conditioning is 1/(condition number): 1 is isotropic, 0 singular.");
   dexterity.row("conditioning, translation", sweep.translation_conditioning, 1.0, "");
   dexterity.row("conditioning, rotation", sweep.rotation_conditioning, 1.0, "");
-  dexterity.row("manipulability, translation", sweep.manipulability, 1e6, "cm³/rad³");
+  double factor = 1.0;
+  const std::string unit = manipulability_unit(mechanism, mechanism.linear_rows(), factor);
+  dexterity.row("manipulability, translation", sweep.manipulability, factor, unit);
   dexterity.into(tables);
 
   TableBuilder force(
@@ -194,7 +200,7 @@ std::vector<PostureTable> arm_tables(const ArmSheet& arm, const std::vector<bool
   return tables;
 }
 
-std::vector<ArmFact> reach_facts(const ArmSheet& arm) {
+std::vector<ArmFact> reach_facts(const ArmSheet& arm, const Mechanism& mechanism) {
   std::vector<ArmFact> facts;
   if (arm.reach) {
     const ReachableVolume& volume = arm.reach->volume;
@@ -222,7 +228,16 @@ std::vector<ArmFact> reach_facts(const ArmSheet& arm) {
   if (sweep.translation.weight() > 0.0) {
     facts.push_back({"global conditioning", number(sweep.translation.index(), 4),
                      "of translation, mean of 1/(condition number K) over postures; 1 is best"});
-    facts.push_back({"", "", shares_by_class(sweep.translation)});
+    facts.push_back({"share by K", "", shares_by_class(sweep.translation)});
+    const PostureStatistic& best = sweep.translation_conditioning;
+    if (best.count > 0 && best.max > 0.0) {
+      std::string joints;
+      for (int i = 0; i < mechanism.active_count(); ++i)
+        joints += (i > 0 ? ", " : "") + joint_text(mechanism, i, best.max_at[i]);
+      facts.push_back({"nearest to isotropic", fmt::format("K = {}", number(1.0 / best.max)), "at " + joints});
+      facts.push_back({fmt::format("near isotropic, K < {:g}", kNearIsotropic),
+                       near_isotropic_share(sweep.translation), "of the postures"});
+    }
   }
   if (sweep.homogeneous.weight() > 0.0) {
     facts.push_back(
@@ -257,8 +272,9 @@ std::vector<ArmFact> orientation_facts(const std::optional<OrientationWorkspace>
     facts.push_back({whole,
                      fmt::format("{} ± {}", quantity(spread.dexterous_volume(), 1e3, "dm³", 4),
                                  quantity(spread.volume_error.back(), 1e3, "dm³", 2)),
-                     fmt::format("where all of them can be had; half of them in {}",
-                                 quantity(spread.volume[1], 1e3, "dm³", 4))});
+                     fmt::format("where all of them can be had; half of them in {} ± {}",
+                                 quantity(spread.volume[1], 1e3, "dm³", 4),
+                                 quantity(spread.volume_error[1], 1e3, "dm³", 2))});
   };
   if (workspace->orientations) over_all("orientations", "dexterous volume", *workspace->orientations);
   over_all("directions", "any direction", workspace->directions);
@@ -340,6 +356,8 @@ std::vector<ArmFact> pose_facts(const PoseWorkspace& workspace) {
     facts.push_back({name, number(part.of_all.index(), 4), of});
     facts.push_back({"  nearest to isotropic", fmt::format("K = {}", number(1.0 / part.figure.max)),
                      "at " + place_text(workspace, part.figure.max_at)});
+    facts.push_back({fmt::format("  near isotropic, K < {:g}", kNearIsotropic),
+                     near_isotropic_share(part.of_all), "of the places"});
     facts.push_back({"  share by K", "", shares_by_class(part.of_all)});
   };
   conditioning("conditioning, translation", workspace.translation, "mean of 1/(condition number K), 1 is best");

@@ -29,7 +29,8 @@ struct PostureTable {
 };
 
 /// The tables that this sheet has something to say in.
-std::vector<PostureTable> arm_tables(const ArmSheet& arm, const std::vector<bool>& joint_slides);
+std::vector<PostureTable> arm_tables(const ArmSheet& arm, const Mechanism& mechanism,
+                                     const std::vector<bool>& joint_slides);
 
 /// A line of plain facts.
 struct ArmFact {
@@ -37,7 +38,7 @@ struct ArmFact {
 };
 
 /// Where the tool point can be.
-std::vector<ArmFact> reach_facts(const ArmSheet& arm);
+std::vector<ArmFact> reach_facts(const ArmSheet& arm, const Mechanism& mechanism);
 /// How the tool can be turned at a place.
 struct PlaceOrientations {
   Vector3 position = Vector3::Zero();  ///< [m]

@@ -381,7 +381,7 @@ class Page {
       facts(turning_facts(arm.pose->turning));
     }
     section("reach", arm.pose ? "Reach of the tool point in any orientation" : "Reach of the tool point");
-    facts(reach_facts(arm));
+    facts(reach_facts(arm, Mechanism(description_)));
     show_figures("reach", "three");
     if (arm.orientations) {
       section("orientations", "Orientations of the tool");
@@ -395,7 +395,7 @@ class Page {
       section("home", "Home posture");
       facts(home_facts(arm, Mechanism(description_)));
     }
-    for (const PostureTable& table : arm_tables(arm, sheet_.joint_slides)) {
+    for (const PostureTable& table : arm_tables(arm, Mechanism(description_), sheet_.joint_slides)) {
       section(table.id, table.title);
       how(table.how);
       statistics_head("Over the joint ranges");
@@ -421,11 +421,13 @@ class Page {
     const bool integral = workspace.volume.method == WorkspaceVolume::Method::integral;
     row("Volume", quantity(workspace.volume.value, 1e6, "cm³", 6),
         integral
-            ? fmt::format("integral of |det J| over the joint ranges, Gauss–Legendre with {} points per axis",
-                          workspace.volume.order)
-            : fmt::format(
-                  "counted on a lattice of {}, because det J changes sign or the legs do not close everywhere",
-                  format_quantity(workspace.volume.spacing, Dimension::length)));
+            ? fmt::format("integral of |det J| over the joint ranges, Gauss–Legendre with {} points per axis; "
+                          "within {}",
+                          workspace.volume.order, quantity(workspace.volume.error_estimate, 1e6, "cm³", 1))
+            : fmt::format("counted on a lattice of {}, because det J changes sign or the legs do not close "
+                          "everywhere; within {}",
+                          format_quantity(workspace.volume.spacing, Dimension::length),
+                          quantity(workspace.volume.error_estimate, 1e6, "cm³", 1)));
     row("Volume by counting", quantity(workspace.sweep.volume, 1e6, "cm³", 6),
         fmt::format("{} points of a {} lattice, {} in its box", workspace.sweep.inside,
                     format_quantity(workspace.sweep.spacing, Dimension::length),
@@ -493,8 +495,9 @@ class Page {
     how(fmt::format("At {} lattice points in the workspace.", sweep.inside));
     statistics_head(sweep.spacing);
     statistics("Condition number of the Jacobian (1 is best)", sweep[Figure::condition_number], 1.0, "");
-    statistics("Manipulability |det J|", sweep[Figure::manipulability], sheet_.plane ? 1e4 : 1e6,
-               sheet_.plane ? "cm²/rad²" : "cm³/rad³");
+    double factor = 1.0;
+    const std::string unit = manipulability_unit(Mechanism(description_), sheet_.plane ? 2 : 3, factor);
+    statistics("Manipulability |det J|", sweep[Figure::manipulability], factor, unit);
     if (sweep[Figure::leg_singularity].count > 0)
       statistics("Distance to a stretched or folded leg (0 is singular)", sweep[Figure::leg_singularity], 1.0,
                  "");
@@ -511,6 +514,14 @@ class Page {
           "condition number K: {}.</p>\n",
           sheet_.plane ? "area" : "volume", number(sheet_.conditioning->of_all.index(), 4),
           escaped(shares_by_class(sheet_.conditioning->of_all)));
+      const Statistic& K = sweep[Figure::condition_number];
+      if (K.count > 0) {
+        body_ += fmt::format(
+            "<p>Nearest to isotropic: K = {} at {}. Near isotropic, K &lt; {:g}: {} of the {}.</p>\n",
+            number(K.min), escaped(sheet_.plane ? plane_point_text(K.min_at) : point_text(K.min_at)),
+            kNearIsotropic, near_isotropic_share(sheet_.conditioning->of_all),
+            sheet_.plane ? "area" : "volume");
+      }
     }
     show_figures("dexterity", "three");
   }

@@ -229,6 +229,7 @@ Json conditioning_json(const GlobalConditioning& conditioning) {
           {"spread", json_number(conditioning.spread())},
           {"worst", json_number(conditioning.worst())},
           {"best", json_number(conditioning.best())},
+          {"near_isotropic", json_number(conditioning.near_isotropic())},
           {"shares", shares}};
 }
 

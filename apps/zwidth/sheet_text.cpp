@@ -140,7 +140,8 @@ class SheetText {
     text_.heading("Workspace");
     const bool integral = workspace.volume.method == WorkspaceVolume::Method::integral;
     text_.row("volume", quantity(workspace.volume.value, 1e6, "cm³", 5),
-              integral ? "integral of |det J|" : "counted on a lattice");
+              fmt::format("{}, within {}", integral ? "integral of |det J|" : "counted on a lattice",
+                          quantity(workspace.volume.error_estimate, 1e6, "cm³", 1)));
     text_.row("", quantity(workspace.sweep.volume, 1e6, "cm³", 5),
               fmt::format("{} points of a {} lattice", workspace.sweep.inside,
                           format_quantity(workspace.sweep.spacing, Dimension::length)));
@@ -178,9 +179,10 @@ class SheetText {
               "centre " + plane_point_text(square.centre));
     const DexterousRegion& dexterous = plane.dexterous;
     text_.row(fmt::format("condition number < {:g}", dexterous.limit), quantity(dexterous.area, 1e4, "cm²", 4),
-              plane.area.value > 0.0
-                  ? fmt::format("{} % of the area", number(100.0 * dexterous.area / plane.area.value, 3))
-                  : "");
+              plane.area.value > 0.0 ? fmt::format("{} % of the area, within {}",
+                                                   number(100.0 * dexterous.area / plane.area.value, 3),
+                                                   quantity(dexterous.error_estimate, 1e4, "cm²", 1))
+                                     : "");
     if (dexterous.annulus) {
       text_.row("on every full circle", interval(dexterous.annulus->min, dexterous.annulus->max, kMilli, "mm"),
                 "radius about the origin");
@@ -246,10 +248,10 @@ class SheetText {
       if (arm.pose->reached) facts("Turned at home", turning_facts(arm.pose->turning));
     }
     facts(arm.pose ? "Reach of the tool point in any orientation" : "Reach of the tool point",
-          reach_facts(arm));
+          reach_facts(arm, Mechanism(description_)));
     facts("Orientations of the tool", orientation_facts(arm.orientations, home_turning(arm)));
     facts("Home posture", home_facts(arm, Mechanism(description_)));
-    for (const PostureTable& table : arm_tables(arm, sheet_.joint_slides)) {
+    for (const PostureTable& table : arm_tables(arm, Mechanism(description_), sheet_.joint_slides)) {
       text_.heading(table.title);
       std::vector<std::vector<std::string>> rows;
       for (const PostureRow& row : table.rows) {
@@ -280,8 +282,9 @@ class SheetText {
     text_.heading("Dexterity over the workspace");
     std::vector<std::vector<std::string>> rows;
     rows.push_back(cells("condition number", sweep[Figure::condition_number], 1.0, ""));
-    rows.push_back(cells("manipulability", sweep[Figure::manipulability], dimension == 2 ? 1e4 : 1e6,
-                         dimension == 2 ? "cm²/rad²" : "cm³/rad³"));
+    double factor = 1.0;
+    const std::string unit = manipulability_unit(Mechanism(description_), dimension, factor);
+    rows.push_back(cells("manipulability", sweep[Figure::manipulability], factor, unit));
     if (sweep[Figure::leg_singularity].count > 0)
       rows.push_back(cells("leg singularity (0 = singular)", sweep[Figure::leg_singularity], 1.0, ""));
     if (sweep[Figure::platform_singularity].count > 0) {
@@ -293,6 +296,13 @@ class SheetText {
     const GlobalConditioning& conditioning = sheet_.conditioning->of_all;
     text_.row("global conditioning", number(conditioning.index(), 4),
               "mean of 1/(condition number); 1 is isotropic everywhere");
+    const Statistic& K = sweep[Figure::condition_number];
+    if (K.count > 0) {
+      text_.row("nearest to isotropic", fmt::format("K = {}", number(K.min)),
+                "at " + (dimension == 2 ? plane_point_text(K.min_at) : point_text(K.min_at)));
+      text_.row(fmt::format("near isotropic, K < {:g}", kNearIsotropic), near_isotropic_share(conditioning),
+                dimension == 2 ? "of the area" : "of the volume");
+    }
     text_.paragraph(fmt::format("Share of the {} by condition number K: {}.",
                                 dimension == 2 ? "area" : "volume", shares_by_class(conditioning)),
                     2, Tint::dim);
@@ -481,6 +491,24 @@ std::string shares_by_class(const GlobalConditioning& conditioning) {
                         number(100.0 * conditioning.share(k), 3));
   }
   return text;
+}
+
+std::string near_isotropic_share(const GlobalConditioning& conditioning) {
+  return fmt::format("{} %", number(100.0 * conditioning.near_isotropic(), 3));
+}
+
+std::string manipulability_unit(const Mechanism& mechanism, int rows, double& factor) {
+  const JacobianUnits units = jacobian_units(mechanism);
+  int sliding = 0;
+  for (int j = 0; j < mechanism.active_count(); ++j) sliding += units.slides(j) ? 1 : 0;
+  factor = 1.0;
+  // With joints to spare of both kinds, its square is a sum of terms of different units.
+  if (sliding > 0 && sliding < mechanism.active_count() && mechanism.active_count() > rows) return "SI";
+  const int power = sliding == mechanism.active_count() ? 0 : rows - sliding;
+  const char* exponents[] = {"", "", "²", "³"};
+  if (power <= 0 || power > 3) return "";
+  factor = std::pow(100.0, power);
+  return fmt::format("cm{}/rad{}", exponents[power], exponents[power]);
 }
 
 std::string in_words(std::string_view key) {

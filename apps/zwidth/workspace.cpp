@@ -31,14 +31,6 @@ namespace {
 
 std::string statistics_factor(std::string_view unit, double& factor) {
   factor = 1.0;
-  if (unit == "m^3/rad^3") {
-    factor = 1e6;
-    return "cm³/rad³";
-  }
-  if (unit == "m^2/rad^2") {
-    factor = 1e4;
-    return "cm²/rad²";
-  }
   if (unit == "m") {
     factor = 1e6;
     return "µm";
@@ -145,8 +137,9 @@ MechanicalSweep mechanics_of(const Model& model, const Extents& extents, double 
   return sweep_mechanics(model.mechanism, model.drives, fitting_spacing(extents, spacing, kPoints), effort);
 }
 
-void read_figures(const LatticeSweep& sweep, int dimension, bool all, bool driven, Json& document,
+void read_figures(const LatticeSweep& sweep, const Mechanism& mechanism, bool all, bool driven, Json& document,
                   std::vector<std::vector<std::string>>& rows) {
+  const int dimension = in_plane(mechanism) ? 2 : 3;
   Json figures;
   Json notes;
   for (int k = 0; k < (all ? kFigureCount : kCoreFigureCount); ++k) {
@@ -166,7 +159,8 @@ void read_figures(const LatticeSweep& sweep, int dimension, bool all, bool drive
       continue;
     }
     double factor = 1.0;
-    const std::string unit = statistics_factor(info.unit, factor);
+    const std::string unit = key == "manipulability" ? manipulability_unit(mechanism, dimension, factor)
+                                                     : statistics_factor(info.unit, factor);
     rows.push_back({std::string(info.name), number(statistic.min * factor), number(statistic.mean * factor),
                     number(statistic.max * factor), unit});
     std::replace(rows.back()[0].begin(), rows.back()[0].end(), '_', ' ');
@@ -182,10 +176,38 @@ void write_map(const WorkspaceMap& map, const std::string& path) {
   if (!out) throw MachineError(fmt::format("cannot write {}", path));
 }
 
-void print_conditioning(const GlobalConditioning& conditioning, const char* whole, Sheet& sheet) {
+void print_conditioning(const GlobalConditioning& conditioning, const Statistic& condition_number, bool plane,
+                        Sheet& sheet) {
+  const char* whole = plane ? "area" : "volume";
   sheet.row("global conditioning", number(conditioning.index(), 4),
             "mean of 1/(condition number K), 1 is best");
+  if (condition_number.count > 0) {
+    const Vector3& at = condition_number.min_at;
+    sheet.row("nearest to isotropic", "K = " + number(condition_number.min),
+              "at " + (plane ? plane_point_text(at) : point_text(at)));
+    sheet.row(fmt::format("near isotropic, K < {:g}", kNearIsotropic), near_isotropic_share(conditioning),
+              fmt::format("of the {}", whole));
+  }
   sheet.paragraph(fmt::format("Share of the {} by K: {}.", whole, shares_by_class(conditioning)), 2, Tint::dim);
+}
+
+void refuse_wide_lattice(const WorkspaceArguments& arguments, const LatticeSweep& sweep, const Extents& extents,
+                         bool plane) {
+  if (!sweep.complete || sweep.inside > 0) return;
+  std::string widths;
+  double narrowest = extents.range[0].width();
+  for (size_t k = 0; k < (plane ? 2U : 3U); ++k) {
+    widths += fmt::format("{}{}", k > 0 ? " x " : "", quantity(extents.range[k].width(), kMilli, "mm"));
+    narrowest = std::min(narrowest, extents.range[k].width());
+  }
+  if (!(narrowest > 0.0))
+    throw InputError("no posture within the joint ranges closes the loops: the workspace is empty");
+  const double fine = 0.05 * narrowest * kMilli, power = std::pow(10.0, std::floor(std::log10(fine)));
+  const double rounded = std::floor(fine / power) * power;
+  throw InputError(fmt::format(
+      "--grid {}: no point of this lattice lies in the workspace, which is {} wide; take a finer grid, such as "
+      "--grid {}mm",
+      arguments.grid, widths, trimmed(rounded, 1)));
 }
 
 namespace {
@@ -391,6 +413,7 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
       throw InputError(fmt::format("--grid {}: {}; take a coarser grid", arguments.grid, error.what()));
     }
   }
+  refuse_wide_lattice(arguments, sweep, extents, false);
   if (!arguments.map.empty() && sweep.complete) {
     Progress progress("map", "points");
     std::mutex mutex;
@@ -409,6 +432,11 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
       sweep.complete ? finer_count(workspace_volume(model.mechanism, effort), sweep) : WorkspaceVolume{};
   const InscribedShapes inscribed = sweep.complete ? inscribed_shapes(model.mechanism) : InscribedShapes{};
 
+  // What counting is off by is known where the volume is.
+  const bool integral = volume.method == WorkspaceVolume::Method::integral;
+  const double counting_error =
+      volume.error_estimate + (integral ? std::abs(sweep.volume - volume.value) : 0.0);
+
   Json document;
   document["device"] = model.description.name;
   document["grid"] = json_number(sweep.spacing);
@@ -420,6 +448,7 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
     document["volume"] = json_number(volume.value);
     document["volume_method"] = to_string(volume.method);
     document["volume_error"] = json_number(volume.error_estimate);
+    document["lattice_volume_error"] = json_number(counting_error);
   }
   Json ranges;
   for (size_t k = 0; k < 3; ++k)
@@ -451,7 +480,7 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
   }
   Sheet sheet(terminal);
   std::vector<std::vector<std::string>> rows;
-  read_figures(sweep, 3, arguments.all, driven, document, rows);
+  read_figures(sweep, model.mechanism, arguments.all, driven, document, rows);
   if (!sweep.complete) complain("stopped before the end: the figures cover a part of the workspace only");
   if (arguments.json) {
     print_json(document);
@@ -461,13 +490,13 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
               fmt::format("lattice of {}, device frame", format_quantity(sweep.spacing, Dimension::length)));
   if (sweep.complete) {
     sheet.row("volume", quantity(volume.value, 1e6, "cm³", 6),
-              volume.method == WorkspaceVolume::Method::integral
-                  ? "integral of |det J| over the joint ranges"
-                  : fmt::format("counted, within {}", quantity(volume.error_estimate, 1e6, "cm³", 1)));
+              fmt::format("{}, within {}", integral ? "integral of |det J| over the joint ranges" : "counted",
+                          quantity(volume.error_estimate, 1e6, "cm³", 1)));
   }
   sheet.row("points inside", fmt::format("{}", sweep.inside),
-            fmt::format("of {} in the box; {} by counting", sweep.lattice_points,
-                        quantity(sweep.volume, 1e6, "cm³", 6)));
+            fmt::format("of {} in the box; {}{} by counting", sweep.lattice_points,
+                        quantity(sweep.volume, 1e6, "cm³", 6),
+                        sweep.complete ? " ± " + quantity(counting_error, 1e6, "cm³", 1) : ""));
   for (size_t k = 0; k < 3; ++k) {
     sheet.row(fmt::format("range of {}", static_cast<char>('x' + k)),
               interval(extents.range[k].min, extents.range[k].max, kMilli, "mm"),
@@ -483,9 +512,7 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
   sheet.heading("Figures over the workspace");
   sheet.table({"", "min", "mean", "max", ""}, rows);
   if (sweep.complete) {
-    print_conditioning(conditioning.of_all, "volume", sheet);
-    const Statistic& K = sweep[Figure::condition_number];
-    if (K.count > 0) sheet.row("nearest to isotropic", "K = " + number(K.min), "at " + point_text(K.min_at));
+    print_conditioning(conditioning.of_all, sweep[Figure::condition_number], false, sheet);
   }
   if (driven) sheet.paragraph("Forces with the continuous torque of the drives.", 2, Tint::dim);
   if (mechanics) print_mechanics(*mechanics, false, sheet);

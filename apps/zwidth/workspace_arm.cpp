@@ -125,6 +125,11 @@ int arm_workspace(const WorkspaceArguments& arguments, const Model& model, doubl
     return kNo;
   }
   const ReachSheet& reach = *arm.reach;
+  if (!(reach.volume.value > 0.0)) {
+    throw InputError(fmt::format(
+        "--grid {}: no cube of this size has its middle in the workspace, which goes {} far; take a finer grid",
+        arguments.grid, quantity(arm.farthest.distance, kMilli, "mm")));
+  }
   if (!arguments.map.empty()) {
     const ReachMap cubes = reach_map(mechanism, {.samples = options.reach_postures, .spacing = spacing},
                                      {.cancel = options.effort.cancel});
@@ -149,7 +154,7 @@ int arm_workspace(const WorkspaceArguments& arguments, const Model& model, doubl
   sheet.title(fmt::format("{}: workspace", model.description.name),
               fmt::format("of the tool point in any orientation, cubes of {}, device frame",
                           readable(reach.volume.spacing, "m", 3)));
-  for (const ArmFact& fact : reach_facts(arm)) sheet.row(fact.name, fact.value, fact.note);
+  for (const ArmFact& fact : reach_facts(arm, mechanism)) sheet.row(fact.name, fact.value, fact.note);
   print_turning(turning, sheet);
   print_mechanics(mechanics, sheet);
   if (!arguments.map.empty()) sheet.paragraph("map: " + arguments.map, 2, Tint::dim);

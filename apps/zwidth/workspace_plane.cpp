@@ -97,6 +97,7 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
     }
   }
   effort.progress = {};
+  refuse_wide_lattice(arguments, sweep, extents, true);
   Json document;
   document["device"] = model.description.name;
   document["grid"] = json_number(spacing);
@@ -126,6 +127,7 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
     document["area"] = json_number(area.value);
     document["area_method"] = to_string(area.method);
     document["area_error"] = json_number(area.error_estimate);
+    document["lattice_area_error"] = json_number(area.error_estimate + std::abs(sweep.area - area.value));
   }
   document["ranges"] = {{"x", json_interval(extents.range[0])}, {"y", json_interval(extents.range[1])}};
   const InscribedShape &circle = inscribed.circle(), &square = inscribed.square();
@@ -138,7 +140,7 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
     document["conditioning"] = conditioning_json(conditioning);
   }
   std::vector<std::vector<std::string>> rows;
-  read_figures(sweep, 2, arguments.all, model.driven(), document, rows);
+  read_figures(sweep, mechanism, arguments.all, model.driven(), document, rows);
   if (!sweep.complete) complain("stopped before the end: the figures cover a part of the workspace only");
   if (arguments.json) {
     print_json(document);
@@ -158,7 +160,10 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
   }
   sheet.row("points inside", fmt::format("{}", sweep.inside),
             fmt::format("of {} in the box; {} by counting", sweep.lattice_points,
-                        quantity(sweep.area, 1e4, "cm²", 5)));
+                        quantity(sweep.area, 1e4, "cm²", 5)) +
+                (sweep.complete
+                     ? fmt::format(", off by {}", quantity(std::abs(sweep.area - area.value), 1e4, "cm²", 1))
+                     : ""));
   for (size_t k = 0; k < 2; ++k) {
     sheet.row(fmt::format("range of {}", static_cast<char>('x' + k)),
               interval(extents.range[k].min, extents.range[k].max, kMilli, "mm"),
@@ -170,8 +175,10 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
     sheet.row("largest square", quantity(square.size, kMilli, "mm edge"),
               "centre " + plane_point_text(square.centre));
     sheet.row(fmt::format("condition number < {:g}", dexterous.limit), quantity(dexterous.area, 1e4, "cm²", 5),
-              area.value > 0.0 ? fmt::format("{} % of the area", number(100.0 * dexterous.area / area.value, 3))
-                               : "");
+              area.value > 0.0
+                  ? fmt::format("{} % of the area, within {}", number(100.0 * dexterous.area / area.value, 3),
+                                quantity(dexterous.error_estimate, 1e4, "cm²", 1))
+                  : "");
     if (dexterous.annulus) {
       sheet.row("on every full circle", interval(dexterous.annulus->min, dexterous.annulus->max, kMilli, "mm"),
                 "radius about the origin");
@@ -180,10 +187,7 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
   sheet.heading("Figures over the workspace");
   sheet.table({"", "min", "mean", "max", ""}, rows);
   if (sweep.complete) {
-    print_conditioning(conditioning.of_all, "area", sheet);
-    const Statistic& K = sweep[Figure::condition_number];
-    if (K.count > 0)
-      sheet.row("nearest to isotropic", "K = " + number(K.min), "at " + plane_point_text(K.min_at));
+    print_conditioning(conditioning.of_all, sweep[Figure::condition_number], true, sheet);
   }
   if (model.driven()) sheet.paragraph("Forces with the continuous torque of the drives.", 2, Tint::dim);
   if (mechanics) print_mechanics(*mechanics, true, sheet);

@@ -59,10 +59,14 @@ void write_turning(const Turning& turning, Json& document);
 void print_turning(const Turning& turning, Sheet& sheet);
 
 /// `figures` and `notes` of the document, and a row of text per figure.
-void read_figures(const LatticeSweep& sweep, int dimension, bool all, bool driven, Json& document,
+void read_figures(const LatticeSweep& sweep, const Mechanism& mechanism, bool all, bool driven, Json& document,
                   std::vector<std::vector<std::string>>& rows);
-/// `whole`: what shares are of, "area".
-void print_conditioning(const GlobalConditioning& conditioning, const char* whole, Sheet& sheet);
+/// With where the condition number is least.
+void print_conditioning(const GlobalConditioning& conditioning, const Statistic& condition_number, bool plane,
+                        Sheet& sheet);
+/// A lattice without a point in the workspace answers nothing: throws InputError with its size.
+void refuse_wide_lattice(const WorkspaceArguments& arguments, const LatticeSweep& sweep, const Extents& extents,
+                         bool plane);
 /// What `--of` asks to draw: a figure of the Jacobian or a mechanical one.
 struct Drawn {
   bool mechanical = false;

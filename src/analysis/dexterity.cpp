@@ -131,6 +131,7 @@ void GlobalConditioning::add(double condition_number, double weight) {
   // Updated as it goes (West 1979), so that a small spread survives many samples.
   weight_ += weight;
   class_weight_[static_cast<std::size_t>(condition_class(condition_number))] += weight;
+  if (condition_number < kNearIsotropic) near_weight_ += weight;
   const double gap = value - mean_;
   mean_ += gap * weight / weight_;
   squares_ += weight * gap * (value - mean_);
@@ -144,6 +145,7 @@ void GlobalConditioning::add(const GlobalConditioning& other) {
   squares_ += other.squares_ + gap * gap * weight_ * other.weight_ / total;
   mean_ += gap * other.weight_ / total;
   weight_ = total;
+  near_weight_ += other.near_weight_;
   for (std::size_t k = 0; k < class_weight_.size(); ++k) class_weight_[k] += other.class_weight_[k];
 }
 
@@ -153,6 +155,10 @@ double GlobalConditioning::index() const {
 
 double GlobalConditioning::spread() const {
   return weight_ > 0.0 ? std::sqrt(std::max(0.0, squares_ / weight_)) : 0.0;
+}
+
+double GlobalConditioning::near_isotropic() const {
+  return weight_ > 0.0 ? near_weight_ / weight_ : 0.0;
 }
 
 double GlobalConditioning::share(ConditionClass condition_class) const {

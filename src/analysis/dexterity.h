@@ -55,6 +55,9 @@ ConditionClass condition_class(double condition_number);
 /// "K < 5", "5 to 10", "10 to 100", "K > 100".
 const char* to_string(ConditionClass condition_class);
 
+/// A tool with a condition number below this moves about as easily every way.
+inline constexpr double kNearIsotropic = 2.0;
+
 /// Mean of 1/(condition number) over a workspace: the global conditioning index (Gosselin & Angeles 1991). The
 /// condition number itself has no mean: it grows without bound towards a singularity.
 class GlobalConditioning {
@@ -70,6 +73,8 @@ class GlobalConditioning {
   double worst() const { return worst_; }    ///< smallest 1/(condition number) seen; 1 without samples
   double best() const { return best_; }      ///< largest
   double spread() const;                     ///< standard deviation of 1/(condition number)
+  /// Of the whole weight, the part that is near isotropy: with condition numbers below `kNearIsotropic`.
+  double near_isotropic() const;
   /// Of the whole weight, the part with condition numbers of a class; 0 without samples.
   double share(ConditionClass condition_class) const;
 
@@ -79,6 +84,7 @@ class GlobalConditioning {
   double squares_ = 0.0;  // weighted, of differences from the mean
   double worst_ = 1.0;
   double best_ = 0.0;
+  double near_weight_ = 0.0;
   std::array<double, kConditionClasses.size()> class_weight_{};
 };
 

@@ -279,19 +279,24 @@ Places places_in(const ReachMap& map, int wanted) {
   return places;
 }
 
-ShareSpread spread_of(const std::vector<double>& shares, double volume) {
+ShareSpread spread_of(const std::vector<Share>& shares, double volume) {
   ShareSpread spread;
   if (shares.empty()) return spread;
   const auto n = static_cast<double>(shares.size());
-  spread.least = *std::ranges::min_element(shares);
-  spread.most = *std::ranges::max_element(shares);
-  for (const double share : shares) spread.mean += share / n;
+  spread.least = std::ranges::min(shares, {}, &Share::value).value;
+  spread.most = std::ranges::max(shares, {}, &Share::value).value;
+  for (const Share& share : shares) spread.mean += share.value / n;
   for (std::size_t level = 0; level < kShareLevels.size(); ++level) {
-    const double p =
-        static_cast<double>(std::ranges::count_if(shares, [&](double s) { return s >= kShareLevels[level]; })) /
-        n;
+    const double wanted = kShareLevels[level];
+    const auto part = [&](const auto& counts) {
+      return static_cast<double>(std::ranges::count_if(shares, counts)) / n;
+    };
+    const double p = part([&](const Share& s) { return s.value >= wanted; });
+    // A whole share has found everything that it asked for, and is sure.
+    const double open =
+        part([&](const Share& s) { return s.error > 0.0 && std::abs(s.value - wanted) <= s.error; });
     spread.volume[level] = p * volume;
-    spread.volume_error[level] = std::sqrt(p * (1.0 - p) / n) * volume;
+    spread.volume_error[level] = std::hypot(std::sqrt(p * (1.0 - p) / n), 0.5 * open) * volume;
   }
   return spread;
 }
@@ -337,10 +342,10 @@ OrientationWorkspace orientation_workspace(const Mechanism& mechanism, const Rea
   workspace.complete = internal::for_each_index(answers.size(), effort,
                                                 [&](std::size_t p) { answers[p] = explorer.at(places.at[p]); });
   const double volume = reachable_volume(map).value;
-  std::vector<double> directions, orientations;
+  std::vector<Share> directions, orientations;
   for (const OrientationsAt& answer : answers) {
-    directions.push_back(answer.directions.value);
-    if (answer.orientations) orientations.push_back(answer.orientations->value);
+    directions.push_back(answer.directions);
+    if (answer.orientations) orientations.push_back(*answer.orientations);
   }
   workspace.directions = spread_of(directions, volume);
   if (mechanism.active_count() >= 6) workspace.orientations = spread_of(orientations, volume);

@@ -61,7 +61,9 @@ struct ShareSpread {
   double most = 0.0;
   std::array<double, kShareLevels.size()>
       volume{};  ///< where the share is at least each of `kShareLevels` [m^3]
-  std::array<double, kShareLevels.size()> volume_error{};  ///< standard error from the number of places [m^3]
+  /// Of the volume: the standard error from the number of places, and those places whose share is as near to
+  /// the level as its own error, half of whom may be on either side [m^3].
+  std::array<double, kShareLevels.size()> volume_error{};
 
   double dexterous_volume() const { return volume.back(); }  ///< where it is whole [m^3]
 };

@@ -16,9 +16,11 @@ namespace {
 constexpr double kSame = 1e-9;       // of directions, and of positions relative to the arm's size
 constexpr double kRounding = 1e-12;  // by which a cosine may be beyond 1
 
+// Of an angle a few turns off at most.
 double wrapped(double angle) {
-  const double turned = std::remainder(angle, 2.0 * std::numbers::pi);
-  return turned <= -std::numbers::pi ? std::numbers::pi : turned;
+  while (angle > std::numbers::pi) angle -= 2.0 * std::numbers::pi;
+  while (angle <= -std::numbers::pi) angle += 2.0 * std::numbers::pi;
+  return angle;
 }
 
 bool parallel(const Vector3& a, const Vector3& b) {
@@ -71,7 +73,9 @@ std::optional<PositioningArm> PositioningArm::of(const LegDescription& leg) {
   arm.e2_ = arm.n_.cross(arm.e1_);
   // Without an upper arm the first two joints are one.
   const Planar u = arm.across(arm.p2_ - arm.p1_);
-  if (std::hypot(u.x, u.y) < kSame * size) return std::nullopt;
+  arm.upper_ = std::hypot(u.x, u.y);
+  arm.upper_angle_ = std::atan2(u.y, u.x);
+  if (arm.upper_ < kSame * size) return std::nullopt;
   return arm;
 }
 
@@ -79,8 +83,8 @@ std::optional<PositioningArm> PositioningArm::of(const LegDescription& leg) {
 // r = R(theta1) (u + R(theta2) w).
 void PositioningArm::plane(const Planar& r, const Planar& w, double third,
                            PositioningSolutions& solutions) const noexcept {
-  const Planar u = across(p2_ - p1_);
-  const double upper = std::hypot(u.x, u.y), fore = std::hypot(w.x, w.y), reach = std::hypot(r.x, r.y);
+  const double upper = upper_, fore = std::sqrt(w.x * w.x + w.y * w.y);
+  const double reach = std::sqrt(r.x * r.x + r.y * r.y);
   const double size = upper + fore;
   if (fore < kRounding * size || (reach < kRounding * size && std::abs(upper - fore) < kRounding * size)) {
     if (solutions.status == SolveStatus::unreachable) solutions.status = SolveStatus::degenerate;
@@ -88,14 +92,13 @@ void PositioningArm::plane(const Planar& r, const Planar& w, double third,
   }
   const double cosine = (reach * reach - upper * upper - fore * fore) / (2.0 * upper * fore);
   if (!(std::abs(cosine) <= 1.0 + kRounding)) return;
-  const double bend = std::acos(std::clamp(cosine, -1.0, 1.0));
-  for (const double b : {bend, -bend}) {
+  const double c = std::clamp(cosine, -1.0, 1.0), sine = std::sqrt(1.0 - c * c), bend = std::atan2(sine, c);
+  const double towards = std::atan2(r.y, r.x) - upper_angle_, aside = std::atan2(fore * sine, upper + fore * c);
+  const double straight = upper_angle_ - std::atan2(w.y, w.x);
+  for (const double side : {1.0, -1.0}) {
     std::array<double, 3>& q = solutions.joints[solutions.count++];
-    const double theta2 = b - std::atan2(w.y, w.x) + std::atan2(u.y, u.x);
-    const double theta1 = std::atan2(r.y, r.x) - std::atan2(u.y, u.x) -
-                          std::atan2(fore * std::sin(b), upper + fore * std::cos(b));
-    q[first_] = wrapped(theta1);
-    q[second_] = wrapped(sign_[second_] * theta2);
+    q[first_] = wrapped(towards - side * aside);
+    q[second_] = wrapped(sign_[second_] * (straight + side * bend));
     q[slide_ >= 0 ? slide_ : 2] = third;
   }
   solutions.status = SolveStatus::reached;
@@ -122,6 +125,22 @@ PositioningSolutions PositioningArm::inverse(const Vector3& position) const noex
   return solutions;
 }
 
+PositioningSolutions PositioningArm::inverse(const Vector3& position,
+                                             PositioningMemory& memory) const noexcept {
+  if (slide_ < 0) return inverse(position);
+  const Planar across_it = across(position);
+  if (memory.solutions.count < 0 || memory.across[0] != across_it.x || memory.across[1] != across_it.y) {
+    memory.across = {across_it.x, across_it.y};
+    memory.solutions = inverse(position);
+    return memory.solutions;
+  }
+  PositioningSolutions solutions = memory.solutions;
+  for (int s = 0; s < solutions.count; ++s)
+    solutions.joints[static_cast<std::size_t>(s)][static_cast<std::size_t>(slide_)] =
+        sign_[slide_] * n_.dot(position - tip_);
+  return solutions;
+}
+
 // -------------------------------------------------------------------------------------------------- closed
 // form
 
@@ -145,6 +164,8 @@ class PositioningClosedForm final : public ClosedForm {
   int branch_count() const noexcept override {
     return arm_.branch_count() * (wrist_ ? wrist_->branch_count() : 1);
   }
+  // Of an arm with a wrist the place that is solved for is not the tool.
+  PositioningForm parts() const noexcept { return wrist_ ? PositioningForm{} : PositioningForm{&arm_, &chain_}; }
 
   // Of a rigid tool a position alone leaves joints open.
   bool covers(const SolveOptions& options) const noexcept override {
@@ -228,6 +249,11 @@ class PositioningClosedForm final : public ClosedForm {
 };
 
 }  // namespace
+
+PositioningForm positioning_form_of(const Mechanism& mechanism) noexcept {
+  const auto* form = dynamic_cast<const PositioningClosedForm*>(mechanism.closed_form());
+  return form != nullptr ? form->parts() : PositioningForm{};
+}
 
 std::shared_ptr<const ClosedForm> positioning_closed_form(const SerialDescription& arm) {
   const LegDescription leg = legs_of(arm).legs.front();

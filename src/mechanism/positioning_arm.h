@@ -6,6 +6,7 @@
 
 #include "zwidth/description/description.h"
 #include "zwidth/mechanism/closed_form.h"
+#include "zwidth/mechanism/mechanism.h"
 
 /// Three joints that bring a point anywhere in space, in closed form: two revolute joints with parallel axes,
 /// and either a prismatic joint along them or, after them, a revolute one at right angles. The positioning
@@ -22,6 +23,13 @@ struct PositioningSolutions {
   std::array<std::array<double, 3>, 4> joints{};  ///< of the three, in the order of the leg [rad] or [m]
 };
 
+/// What one question leaves for the next: along the slide of an arm that has one, only the slide differs.
+struct PositioningMemory {
+  std::array<double, 2> across{};  ///< of the last position
+  PositioningSolutions solutions;  ///< for it; a count below zero: nothing is known
+  PositioningMemory() { solutions.count = -1; }
+};
+
 class PositioningArm {
  public:
   /// Empty unless the leg is of this kind. Axes count as parallel, at right angles or meeting to 1e-9. Its
@@ -33,6 +41,8 @@ class PositioningArm {
 
   /// All solutions for a position of the tool point [m], base frame; angles in (-pi, pi].
   PositioningSolutions inverse(const Vector3& position) const noexcept;
+  /// The same, quicker where the last position differs along the slide only.
+  PositioningSolutions inverse(const Vector3& position, PositioningMemory& memory) const noexcept;
 
  private:
   // Complex numbers are vectors across the parallel axes.
@@ -43,6 +53,8 @@ class PositioningArm {
   Planar across(const Vector3& v) const noexcept { return {e1_.dot(v), e2_.dot(v)}; }
   void plane(const Planar& r, const Planar& w, double third, PositioningSolutions& solutions) const noexcept;
 
+  double upper_ = 0.0, upper_angle_ = 0.0;  // length and direction of the upper arm, across
+
   Vector3 n_, e1_, e2_;           // along the axes, and across them
   int slide_ = -1;                // index of the prismatic joint among the three, -1 if there is none
   int first_ = 0, second_ = 1;    // of the parallel revolute joints
@@ -50,6 +62,14 @@ class PositioningArm {
   Vector3 p1_, p2_, p3_, tip_;    // points of first, second and third joint, and the tool, zero posture
   Vector3 m_;                     // axis of the third revolute joint
 };
+
+/// The arm whose closed form a mechanism has, and its rows; null if its closed form is another, one
+/// with a wrist, or none.
+struct PositioningForm {
+  const PositioningArm* arm = nullptr;
+  const SerialChain* chain = nullptr;  ///< with the wrist, if there is one
+};
+PositioningForm positioning_form_of(const Mechanism& mechanism) noexcept;
 
 /// The closed form of a serial arm of this kind, whose tool is a point or rigid; null if it is none. Of a rigid
 /// tool the wrist has up to three joints, and may meet elsewhere than in the tool point.

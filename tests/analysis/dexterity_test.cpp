@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -123,6 +124,19 @@ TEST(GlobalConditioning, CountsSingularSamplesAsZero) {
   EXPECT_EQ(figure.worst(), 0.0);
   EXPECT_EQ(figure.best(), 0.5);
   EXPECT_DOUBLE_EQ(figure.spread(), 0.25);
+}
+
+TEST(GlobalConditioning, SaysHowMuchIsNearIsotropic) {
+  GlobalConditioning one, two;
+  one.add(1.0, 2.0);
+  one.add(1.99, 1.0);
+  two.add(2.0, 3.0);  // not below the limit
+  two.add(std::numeric_limits<double>::infinity(), 2.0);
+  EXPECT_DOUBLE_EQ(one.near_isotropic(), 1.0);
+  EXPECT_DOUBLE_EQ(two.near_isotropic(), 0.0);
+  one.add(two);
+  EXPECT_DOUBLE_EQ(one.near_isotropic(), 3.0 / 8.0);
+  EXPECT_EQ(GlobalConditioning().near_isotropic(), 0.0);
 }
 
 TEST(ConditionClass, HasTheLimitsOfItsSource) {

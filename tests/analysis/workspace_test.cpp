@@ -11,6 +11,9 @@
 #include "support/deltas.h"
 
 #include "zwidth/mechanism/families.h"
+#include "zwidth/mechanism/figure.h"
+#include "zwidth/mechanism/jacobian.h"
+#include "zwidth/mechanism/posture.h"
 
 namespace zwidth {
 namespace {
@@ -235,6 +238,68 @@ TEST(Workspace, LatticeVolumeTendsToTheIntegral) {
     // Points on the boundary layer, area x h, count with random sign: far less than the layer itself.
     const double layer = 6.0 * size * size * h;
     EXPECT_NEAR(counted, volume.value, 0.02 * layer + volume.error_estimate) << to_string(volume.method);
+  }
+}
+
+// Two revolute joints about parallel axes, with a slide along them or a third across.
+SerialDescription positioning_arm(bool slides) {
+  const auto row = [](const char* name, double theta, double d, double a, double alpha, Interval range) {
+    return SerialJointDescription{
+        .name = name, .theta = theta, .d = d, .a = a, .alpha = alpha, .range = range, .home = range.middle()};
+  };
+  SerialDescription arm;
+  arm.platform = PlatformFreedom::point;
+  if (slides) {
+    arm.joints.push_back(row("slide", 0.0, 0.0, 0.095, 0.0, {0.0, 0.1}));
+    arm.joints.back().type = SerialJointType::prismatic;
+  }
+  arm.joints.push_back(row("one", 0.0, 0.0, 0.225, 0.0, {-1.0, 1.0}));
+  arm.joints.push_back(
+      row("two", -1.2, 0.03, slides ? 0.15 : 0.1, slides ? 0.0 : 0.5 * std::numbers::pi, {-0.9, 1.1}));
+  if (!slides) arm.joints.push_back(row("three", 0.0, 0.0, 0.2, 0.0, {-0.5, 0.8}));
+  return arm;
+}
+
+TEST(Workspace, OfPositioningArmsIsWhereSomePostureIsWithinTheRanges) {
+  for (const bool slides : {true, false}) {
+    Description description;
+    description.name = "arm";
+    description.mechanism = positioning_arm(slides);
+    const Mechanism mechanism(description);
+    constexpr double h = 0.013;
+    const LatticeSweep sweep = sweep_workspace(mechanism, {.spacing = h});
+    std::int64_t inside = 0;
+    double least = 1e9;
+    for (int i = -45; i <= 45; ++i) {
+      for (int j = -45; j <= 45; ++j) {
+        for (int k = -25; k <= 25; ++k) {
+          const Pose goal{.position = h * Vector3(i, j, k)};
+          double best = 0.0;
+          for (const Solution& solution : solve_inverse_all(mechanism, goal)) {
+            if (solution.status == SolveStatus::joint_limit) continue;
+            best = 1.0;
+            least = std::min(least, dexterity(jacobian(*solution.posture)).condition_number);
+          }
+          if (best > 0.0) ++inside;
+        }
+      }
+    }
+    EXPECT_GT(inside, 500);
+    EXPECT_EQ(sweep.inside, inside) << slides;
+    EXPECT_NEAR(sweep[Figure::condition_number].min, least, 1e-9 * least);
+  }
+}
+
+TEST(Workspace, ConditionNumbersAreThoseOfTheSingularValues) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  for (int n = 0; n < 2000; ++n) {
+    Matrix3 J = Matrix3::NullaryExpr([&] { return normal(random); });
+    if (n % 3 == 0) J.col(0) = J.col(1) + std::pow(10.0, -0.003 * n) * J.col(0);
+    if (n % 3 == 1) J = Matrix3::Identity() + 1e-9 * J;
+    const double K = dexterity(Jacobian(J)).condition_number;
+    const double found = figure(jacobian_figures(J, {}), Figure::condition_number);
+    EXPECT_NEAR(found, K, 1e-11 * K + 1e-15 * K * K) << n;
   }
 }
 

@@ -107,6 +107,9 @@ TEST(Errors, BadGrid) {
   expect_refused({"workspace", "delta", "--grid", "-1mm"}, 2, {"--grid"});
   expect_refused({"workspace", "delta", "--grid", "1 kg"}, 2, {"--grid", "length"});
   expect_refused({"workspace", "delta", "--grid", "1nm"}, 2, {"--grid", "coarser"});
+  expect_refused({"workspace", "delta", "--grid", "1m"}, 2, {"--grid", "259", "finer"});
+  expect_refused({"workspace", "five-bar", "--grid", "1m"}, 2, {"--grid", "257", "finer"});
+  expect_refused({"workspace", "seven-dof", "--grid", "10m"}, 2, {"--grid", "finer"});
 }
 TEST(Errors, BadMapAndFigureNames) {
   expect_refused({"workspace", "delta", "--map", "x.xls"}, 2, {"x.xls", ".csv"});

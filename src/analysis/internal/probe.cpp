@@ -66,6 +66,11 @@ Probe::Probe(const Mechanism& mechanism) : mechanism_(&mechanism), dimension_(to
     branch_ = mode_.left * mode_.right * assembly_mode_;
     return;
   }
+  if (mechanism.active_count() == 3) arm_ = positioning_form_of(mechanism);
+  if (arm_.arm != nullptr) {
+    arm_start_ = middle();
+    return;
+  }
   const Solution home = solve_forward(mechanism, middle().head(dimension_));
   if (!home) return;
   rotation_ = home.posture->tool().rotation;
@@ -130,6 +135,18 @@ Probe::Answer Probe::answer_from(const RCubeSolution& solution) const {
   return answer;
 }
 
+Probe::Answer Probe::arm_answer(const Vector3& joints) const {
+  SerialForward here;
+  arm_.chain->forward(joints, here);
+  Answer answer;
+  answer.reached = answer.on_branch = true;  // it has no loops: all its postures are its own
+  answer.joints = joints;
+  answer.position = here.tool.position;
+  answer.jacobian = here.jacobian.topRows<3>();
+  answer.inside = within_ranges(joints);
+  return answer;
+}
+
 Probe::Answer Probe::five_bar_answer(const Vector2& theta, const Vector2& position, const Matrix2& J) const {
   Answer answer;
   answer.reached = true;
@@ -183,6 +200,32 @@ Probe::Answer Probe::inverse(const Vector3& position) {
     if (inverse.status == SolveStatus::unreachable || inverse.status == SolveStatus::degenerate) return {};
     return five_bar_answer(inverse.theta, position.head<2>(), inverse.jacobian);
   }
+  if (arm_.arm != nullptr) {
+    const PositioningSolutions solutions = arm_.arm->inverse(position, arm_memory_);
+    if (solutions.status != SolveStatus::reached) return {};
+    Vector3 best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int n = 0; n < solutions.count; ++n) {
+      Vector3 joints;
+      double way = 0.0;
+      for (int j = 0; j < 3; ++j) {
+        joints[j] = solutions.joints[static_cast<std::size_t>(n)][static_cast<std::size_t>(j)];
+        if (mechanism_->joints()[static_cast<std::size_t>(j)].type == JointType::revolute)
+          joints[j] -=
+              2.0 * std::numbers::pi * std::round((joints[j] - range(j).middle()) / (2.0 * std::numbers::pi));
+        way += std::abs(joints[j] - arm_start_[j]);
+      }
+      constexpr double kOutOfRange = 1e3;  // more than any way
+      if (!within_ranges(joints)) way += kOutOfRange;
+      if (way < least) {
+        least = way;
+        best = joints;
+      }
+    }
+    const Answer answer = arm_answer(best);
+    if (answer.inside) arm_start_ = best;
+    return answer;
+  }
   const Solution solution = solve_at(position);
   if (!solution) return {};
   const Answer answer = answer_from(*solution.posture);
@@ -224,6 +267,7 @@ Probe::Answer Probe::forward(const Vector3& joints) {
     answer.inside = answer.on_branch && within_ranges(joints);
     return answer;
   }
+  if (arm_.arm != nullptr) return arm_answer(joints);
   const Solution solution = solve_forward(*mechanism_, joints.head(dimension_), follow());
   if (!solution) return {};
   const Answer answer = answer_from(*solution.posture);

@@ -4,6 +4,7 @@
 
 #include "zwidth/mechanism/figure.h"
 #include "zwidth/mechanism/five_bar.h"
+#include "zwidth/mechanism/positioning_arm.h"
 #include "zwidth/mechanism/posture.h"
 #include "zwidth/mechanism/r_cube.h"
 
@@ -40,12 +41,15 @@ class Probe {
   FigureValues figures(const Answer& answer, const DriveLimits& limits) const;
 
   /// Forgets the last answer.
-  void restart() { last_.reset(); }
+  void restart() {
+    last_.reset();
+    arm_start_ = middle();
+  }
 
   const Mechanism& mechanism() const { return *mechanism_; }
   int dimension() const { return dimension_; }  ///< 3, or 2 for a tool in a plane; as many joints
   /// A question costs well under a microsecond.
-  bool fast() const { return mechanism_->delta() || r_cube_ || five_bar_; }
+  bool fast() const { return mechanism_->delta() || r_cube_ || five_bar_ || arm_.arm != nullptr; }
   Interval range(int joint) const { return joint < dimension_ ? mechanism_->active_range(joint) : Interval{}; }
   Vector3 middle() const;  ///< of the joint ranges
   /// A point of n^dimension spread evenly over the joint ranges, ends included. REQUIRES: n > 1.
@@ -57,6 +61,7 @@ class Probe {
   bool within_ranges(const Vector3& joints) const;
   Answer answer_from(const Posture& posture) const;
   Answer answer_from(const RCubeSolution& solution) const;
+  Answer arm_answer(const Vector3& joints) const;
   Answer five_bar_answer(const Vector2& theta, const Vector2& position, const Matrix2& J) const;
 
   const Mechanism* mechanism_;
@@ -64,6 +69,9 @@ class Probe {
   std::optional<RCubeGeometry> r_cube_;
   RCubeBranches r_cube_branches_;
   std::optional<FiveBarGeometry> five_bar_;
+  PositioningMemory arm_memory_;
+  PositioningForm arm_;                  // of three joints
+  Vector3 arm_start_ = Vector3::Zero();  // of its solutions the one nearest to this is asked for
   WorkingMode mode_;
   int assembly_mode_ = 1;
   bool two_cranks_ = false;       // two legs of crank and coupler in a plane

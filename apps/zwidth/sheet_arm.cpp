@@ -212,6 +212,7 @@ std::vector<ArmFact> reach_facts(const ArmSheet& arm, const Mechanism& mechanism
   }
   for (int k = 0; k < 3; ++k) {
     const double low = arm.ends[k][0].distance, high = arm.ends[k][1].distance;
+    if (mechanism.platform() == PlatformFreedom::planar && k == 2) continue;
     facts.push_back({fmt::format("range of {}", kAxes[k]), interval(low, high, kMilli, "mm"),
                      quantity(high - low, kMilli, "mm wide")});
   }
@@ -411,12 +412,17 @@ std::vector<ArmFact> home_facts(const ArmSheet& arm, const Mechanism& mechanism)
   for (const auto& [name, loads] :
        {std::pair{"continuous", &home.continuous_loads}, std::pair{"peak", &home.peak_loads}}) {
     if (loads->size() == 0) continue;
+    std::string along, about;
+    for (const int axis : mechanism.tool_axes()) {
+      std::string& text = axis < 3 ? along : about;
+      text += fmt::format("{}{}", text.empty() ? "" : ", ", kAxes[axis % 3]);
+    }
     if (linear > 0)
-      facts.push_back({fmt::format("{} force", name), loads_text(*loads, 0, linear, "N"), "along x, y, z"});
+      facts.push_back({fmt::format("{} force", name), loads_text(*loads, 0, linear, "N"), "along " + along});
     if (loads->size() > linear) {
       const ToolVector milli = *loads * kMilli;
       facts.push_back({fmt::format("{} moment", name),
-                       loads_text(milli, linear, loads->size() - linear, "mN m"), "about x, y, z"});
+                       loads_text(milli, linear, loads->size() - linear, "mN m"), "about " + about});
     }
   }
   return facts;

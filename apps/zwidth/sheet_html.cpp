@@ -362,8 +362,8 @@ class Page {
   void facts(const std::vector<ArmFact>& lines) {
     std::string rows = "<tr><th>Quantity</th><th class=\"n\">Value</th><th></th></tr>";
     for (const ArmFact& fact : lines) {
-      std::string name = fact.name;
-      name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+      std::string name = fact.name.substr(std::min(fact.name.size(), fact.name.find_first_not_of(' ')));
+      if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
       rows += "<tr>" + cell(name) + cell(fact.value, "n") + cell(fact.note, "source") + "</tr>\n";
     }
     body_ += fmt::format("<div class=\"scroll\"><table>{}</table></div>\n", rows);

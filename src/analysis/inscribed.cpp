@@ -31,34 +31,40 @@ struct Shape {
   bool cube = false;
   int dimension = 3;             // 2: all in the plane of x and y
   std::vector<Vector3> samples;  // of its surface
+  std::vector<Vector3> many;     // of them, to look at the answer once more
 
   Vector3 onto_surface(const Vector3& u) const { return u / (cube ? u.lpNorm<Eigen::Infinity>() : u.norm()); }
 };
 
-Shape unit_sphere() {
-  constexpr int kPoints = 256;  // on a spiral, some 0.22 rad apart
-  Shape shape;
-  for (int n = 0; n < kPoints; ++n) {
-    const double z = 1.0 - (2.0 * n + 1.0) / kPoints, r = std::sqrt(1.0 - z * z);
+std::vector<Vector3> sphere_samples(int count) {
+  std::vector<Vector3> samples;
+  for (int n = 0; n < count; ++n) {  // on a spiral
+    const double z = 1.0 - (2.0 * n + 1.0) / count, r = std::sqrt(1.0 - z * z);
     const double turn = std::numbers::pi * (1.0 + std::sqrt(5.0)) * n;
-    shape.samples.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
+    samples.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
   }
-  return shape;
+  return samples;
 }
 
-Shape unit_cube() {
-  constexpr int kHalf = 3;
-  Shape shape{.cube = true};
-  for (int i = -kHalf; i <= kHalf; ++i) {
-    for (int j = -kHalf; j <= kHalf; ++j) {
-      for (int k = -kHalf; k <= kHalf; ++k) {
-        if (std::max({std::abs(i), std::abs(j), std::abs(k)}) == kHalf) {
-          shape.samples.push_back(Vector3(i, j, k) / kHalf);
-        }
+std::vector<Vector3> cube_samples(int half) {
+  std::vector<Vector3> samples;
+  for (int i = -half; i <= half; ++i) {
+    for (int j = -half; j <= half; ++j) {
+      for (int k = -half; k <= half; ++k) {
+        if (std::max({std::abs(i), std::abs(j), std::abs(k)}) == half)
+          samples.push_back(Vector3(i, j, k) / half);
       }
     }
   }
-  return shape;
+  return samples;
+}
+
+Shape unit_sphere() {
+  return {.samples = sphere_samples(256), .many = sphere_samples(5000)};  // 0.22 rad and 0.05 rad apart
+}
+
+Shape unit_cube() {
+  return {.cube = true, .samples = cube_samples(3), .many = cube_samples(14)};
 }
 
 Shape unit_circle() {
@@ -142,6 +148,21 @@ class Inflation {
     return distinct;
   }
 
+  // The ray that leaves earliest of those that leave before `t`, if the samples so far have missed any.
+  std::optional<Contact> missed(const Vector3& c, double t) {
+    std::optional<Contact> first;
+    for (const Vector3& u : shape_.many) {
+      const double limit = first ? first->t : t * (1.0 - 1e-6);
+      if (inside(c + limit * u)) continue;
+      first = Contact{.u = u, .t = exit_between(c, u, 0.0, limit)};
+    }
+    if (!first) return first;
+    first = descend(c, *first, 0.05);
+    const Vector3 n = normal(c, *first);
+    first->slope = -n / n.dot(first->u);
+    return first;
+  }
+
  private:
   bool inside(const Vector3& p) { return region_.inside(p); }
   double margin(const Vector3& p) { return region_.margin(p); }
@@ -207,7 +228,18 @@ class Inflation {
     if (shape_.dimension == 2) return plane_normal(c, contact);
     const std::optional<Vector3> known = region_.normal(c + contact.t * contact.u, contact.u);
     if (known) return *known;
-    return shape_.cube ? shape_.onto_surface(contact.u).normalized() : contact.u;
+    // From where rays close by leave.
+    constexpr double kTurn = 1e-4;
+    const Vector3& u = contact.u;
+    const Vector3 e = u.unitOrthogonal(), f = u.normalized().cross(e);
+    const auto exit_near = [&](const Vector3& way) -> Vector3 {
+      const Vector3 v = u + kTurn * u.norm() * way;
+      const double limit = contact.t * (1.0 + 50.0 * kTurn);
+      return exit(c, v, limit).value_or(limit) * v;
+    };
+    const Vector3 n = (exit_near(e) - exit_near(-e)).cross(exit_near(f) - exit_near(-f)).normalized();
+    if (n.allFinite() && std::abs(n.dot(u)) > 0.05 * u.norm()) return n.dot(u) < 0.0 ? Vector3(-n) : n;
+    return shape_.cube ? shape_.onto_surface(u).normalized() : u;
   }
 
   // The same in a plane, where the boundary need not be the end of a joint's range. Where a ray leaves first
@@ -314,24 +346,35 @@ InscribedShape inflate(Region& region, const Shape& shape, const Start& start, d
     const double length = shape.cube ? move.lpNorm<Eigen::Infinity>() : move.norm();
     return in_plane ? 0.9 * contacts.front().t - length : 0.0;
   };
-  for (int iteration = 0; iteration < 60 && trust > 1e-10 * scale; ++iteration) {
-    const Vector3 move = best_move(contacts, trust, shape.dimension);
-    if (move.isZero(0.0)) {
-      trust *= 0.3;
-      contacts = inflation.contacts(c, contacts, 2.0 * trust, still_fits(move), scale);
-      continue;
+  // What the rays between the contacts have missed is one more contact.
+  for (int look = 0; look < 12; ++look) {
+    if (contacts.empty()) return {};
+    if (look > 0) {
+      const std::optional<Contact> missed = inflation.missed(c, contacts.front().t);
+      if (!missed) break;
+      contacts.insert(contacts.begin(), *missed);
+      trust = 0.1 * spacing;
     }
-    std::vector<Contact> there = inflation.contacts(c + move, contacts, 2.0 * trust, still_fits(move), scale);
-    double expected = 1e300;
-    for (const Contact& contact : contacts) expected = std::min(expected, contact.t + contact.slope.dot(move));
-    const double gain = there.empty() ? -1.0 : there.front().t - contacts.front().t;
-    if (gain > 0.0) {
-      const bool faithful = gain > 0.5 * (expected - contacts.front().t);
-      c += move;
-      contacts = std::move(there);
-      trust *= faithful ? 1.5 : 0.5;
-    } else {
-      trust *= 0.25;
+    for (int iteration = 0; iteration < 60 && trust > 1e-10 * scale; ++iteration) {
+      const Vector3 move = best_move(contacts, trust, shape.dimension);
+      if (move.isZero(0.0)) {
+        trust *= 0.3;
+        contacts = inflation.contacts(c, contacts, 2.0 * trust, still_fits(move), scale);
+        continue;
+      }
+      std::vector<Contact> there = inflation.contacts(c + move, contacts, 2.0 * trust, still_fits(move), scale);
+      double expected = 1e300;
+      for (const Contact& contact : contacts)
+        expected = std::min(expected, contact.t + contact.slope.dot(move));
+      const double gain = there.empty() ? -1.0 : there.front().t - contacts.front().t;
+      if (gain > 0.0) {
+        const bool faithful = gain > 0.5 * (expected - contacts.front().t);
+        c += move;
+        contacts = std::move(there);
+        trust *= faithful ? 1.5 : 0.5;
+      } else {
+        trust *= 0.25;
+      }
     }
   }
   InscribedShape result;

@@ -109,9 +109,8 @@ TEST(Inscribed, ThinWorkspaceOfAnArm) {
   // (inner + a)^2 + (a/2)^2 = outer^2.
   const double a =
       (-2.0 * inner + std::sqrt(4.0 * inner * inner + 5.0 * (outer * outer - inner * inner))) / 2.5;
-  // The search stops a little off the axis.
-  EXPECT_GE(shapes.cube.size, 0.98 * a);
-  EXPECT_LE(shapes.cube.size, outer - inner);
+  EXPECT_NEAR(shapes.cube.size, a, 1e-7 * a);
+  EXPECT_NEAR(shapes.cube.centre.y(), 0.0, 1e-6);
   EXPECT_NEAR(2.0 * shapes.sphere.size, outer - inner, 1e-6);
 }
 

@@ -588,7 +588,7 @@ TEST(AtArm, WhatIsWrongIsNamedWithItsRule) {
            {pose_and({"--keep", "theta3=1kg"}), "an angle was expected"},
            {pose_and({"--keep", "theta3", "--maximise", "manipulability"}), "give one"},
            {pose_and({"--maximise", "speed"}), "limit_distance"},
-           {pose_and({"--near", "1,2,3"}), "7 are expected"},
+           {pose_and({"--near", "1,2,3"}), "give 7 values"},
            {{"--joints", "0,1,0,1,1,1,1", "--keep", "theta3"}, "goes with --position"}}) {
     const Outcome outcome = at_seven_dof(one.arguments);
     EXPECT_EQ(outcome.status, 2) << one.says;

@@ -154,7 +154,7 @@ TEST(Optimise, ExplainsMistakesInStudies) {
   text.replace(text.find("condition_number"), 16, "condition_numbre");
   const Outcome outcome = run({"optimise", scratch.file("even.toml", text)});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_NE(outcome.err.find("even.toml:16"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("even.toml:17"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("condition_number"), std::string::npos) << outcome.err;
   EXPECT_EQ(run({"optimise", "no-such-study"}).status, 2);
 }

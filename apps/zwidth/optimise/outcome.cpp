@@ -218,7 +218,13 @@ std::string outcome_text(const StudyOutcome& outcome, const StudyModel& model, c
   if (!outcome.chosen) {
     sheet.heading("No design meets all constraints");
     const std::string text = never_met(outcome);
-    if (text.empty()) sheet.paragraph("Each constraint was met by some design, but never all by one.");
+    if (text.empty()) {
+      sheet.paragraph("Each constraint was met by some design, but never all by one.");
+      for (std::size_t c = 0; c < outcome.result.constraints.size(); ++c) {
+        sheet.paragraph(fmt::format("\"{}\" was met by {} of {}", outcome.problem.constraints[c],
+                                    outcome.result.constraints[c].held, outcome.result.evaluations));
+      }
+    }
     for (std::size_t from = 0; from < text.size();) {
       const std::size_t end = text.find('\n', from);
       sheet.paragraph(text.substr(from, end - from), 2, Tint::bad);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
 #include <mutex>
@@ -125,7 +126,11 @@ int arm_workspace(const WorkspaceArguments& arguments, const Model& model, doubl
     return kNo;
   }
   const ReachSheet& reach = *arm.reach;
-  if (!(reach.volume.value > 0.0)) {
+  // A flat reach may have no volume.
+  const double widest = std::max({arm.ends[0][1].distance - arm.ends[0][0].distance,
+                                  arm.ends[1][1].distance - arm.ends[1][0].distance,
+                                  arm.ends[2][1].distance - arm.ends[2][0].distance});
+  if (spacing > widest && !(reach.volume.value > 0.0)) {
     throw InputError(fmt::format(
         "--grid {}: no cube of this size has its middle in the workspace, which goes {} far; take a finer grid",
         arguments.grid, quantity(arm.farthest.distance, kMilli, "mm")));

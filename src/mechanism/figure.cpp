@@ -39,9 +39,11 @@ std::pair<double, double> extreme_singular_values(const Matrix3& jacobian) {
   const double det = a * (b * c - A(1, 2) * A(1, 2)) - A(0, 1) * (A(0, 1) * c - A(1, 2) * A(0, 2)) +
                      A(0, 2) * (A(0, 1) * A(1, 2) - b * A(0, 2));
   constexpr double kThird = 2.0943951023931953;
-  const double phi = std::acos(std::clamp(0.5 * det / (p * square), -1.0, 1.0)) / 3.0;
+  const double r = 0.5 * det / (p * square), phi = std::acos(std::clamp(r, -1.0, 1.0)) / 3.0;
   const double most = mean + 2.0 * p * std::cos(phi), least = mean + 2.0 * p * std::cos(phi + kThird);
-  if (least > kFew * most) return {std::sqrt(most), std::sqrt(least)};
+  // Where two of them are equal the angle is known to half the digits.
+  constexpr double kApart = 1e-6;
+  if (least > kFew * most && std::abs(r) < 1.0 - kApart) return {std::sqrt(most), std::sqrt(least)};
   const Vector3 sigma = Eigen::JacobiSVD<Matrix3>(jacobian).singularValues();
   return {sigma[0], sigma[2]};
 }

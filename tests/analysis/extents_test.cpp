@@ -35,7 +35,7 @@ TEST(Volume, AFlatPrismIsCountedOnTheFinerLattice) {
   Description device = test::prototype(l, {-kRange, kRange});
   std::get<SerialDescription>(device.mechanism).joints[0].range = {0.0, 0.1};
   const Mechanism mechanism(device);
-  constexpr double kSpacing = 0.005;
+  constexpr double kSpacing = 0.002;
   const WorkspaceVolume coarse = workspace_volume(mechanism);
   ASSERT_EQ(coarse.method, WorkspaceVolume::Method::lattice);
   const LatticeSweep sweep = sweep_workspace(mechanism, {.spacing = kSpacing});

@@ -158,8 +158,13 @@ void write_checkpoint(const Checkpoint& checkpoint, const std::filesystem::path&
   body.put(payload);
   const std::filesystem::path fresh = beside(file, ".new");
   write_through(kMagic + body.bytes(), fresh);
+  // The old contents get a second name before the new ones take their place, so that FILE is never missing.
+  const std::filesystem::path previous = beside(file, ".previous");
   std::error_code error;
-  std::filesystem::rename(file, beside(file, ".previous"), error);  // the first time there is none
+  std::filesystem::remove(previous, error);
+  std::filesystem::create_hard_link(file, previous, error);
+  if (error)
+    std::filesystem::rename(file, previous, error);  // no such links here; the first time there is no file
   std::filesystem::rename(fresh, file, error);
   if (error) {
     throw std::runtime_error("cannot write the checkpoint " + file.string() + ": " + error.message());

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fmt/format.h>
+#include <system_error>
 
 #include "zwidth/actuation/drive_problems.h"
 #include "zwidth/description/read.h"
@@ -59,6 +60,20 @@ void print_json(const Json& document) {
 void complain(const std::string& text) {
   const std::string line = "zwidth: " + text + "\n";
   std::fputs(detect_terminal(2).unicode ? line.c_str() : spelled_in_ascii(line).c_str(), stderr);
+}
+
+std::filesystem::path results_directory(const std::string& wanted, const std::filesystem::path& otherwise) {
+  const std::filesystem::path directory = wanted.empty() ? otherwise : std::filesystem::path(wanted);
+  std::error_code error;
+  if (std::filesystem::exists(directory, error) && !std::filesystem::is_directory(directory, error)) {
+    throw InputError(fmt::format("-o {}: is a file; name a directory", directory.string()));
+  }
+  std::filesystem::create_directories(directory / "figures", error);
+  if (error) {
+    throw MachineError(fmt::format("cannot make the directory {}: {}; name another with -o", directory.string(),
+                                   error.message()));
+  }
+  return directory;
 }
 
 void write_file(const std::string& path, std::string_view contents) {

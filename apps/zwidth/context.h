@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -80,6 +81,10 @@ void print(const std::string& text);
 void print_json(const Json& document);
 /// Writes a line to the standard error, prefixed "zwidth: ".
 void complain(const std::string& text);
+
+/// The directory `wanted`, or `otherwise` if that is empty, with a directory "figures" in it; made if need be.
+/// Throws InputError where it is a file, MachineError where it cannot be made.
+std::filesystem::path results_directory(const std::string& wanted, const std::filesystem::path& otherwise);
 
 /// Writes a whole file, or throws MachineError naming it.
 void write_file(const std::string& path, std::string_view contents);

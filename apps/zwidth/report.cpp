@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <memory>
 #include <mutex>
-#include <system_error>
 
 #include "interrupt.h"
 #include "sheet_figures.h"
@@ -23,20 +22,6 @@ namespace fs = std::filesystem;
 struct ReportArguments : DeviceArguments {
   std::string directory;
 };
-
-/// A directory that can be written to, made if need be.
-fs::path prepared(const std::string& wanted, const std::string& name) {
-  const fs::path directory = wanted.empty() ? fs::path("report") / name : fs::path(wanted);
-  std::error_code error;
-  if (fs::exists(directory, error) && !fs::is_directory(directory, error)) {
-    throw InputError(fmt::format("-o {}: is a file; name a directory", directory.string()));
-  }
-  fs::create_directories(directory / "figures", error);
-  if (error)
-    throw MachineError(fmt::format("cannot make the directory {}: {}; name another with -o", directory.string(),
-                                   error.message()));
-  return directory;
-}
 
 int report(const ReportArguments& arguments, const Terminal& terminal) {
   const Description description = read_device(arguments);
@@ -58,7 +43,7 @@ int report(const ReportArguments& arguments, const Terminal& terminal) {
     return kNo;
   }
   // Only now: a design that cannot be computed leaves nothing behind.
-  const fs::path directory = prepared(arguments.directory, description.name);
+  const fs::path directory = results_directory(arguments.directory, fs::path("report") / description.name);
   const std::vector<SheetFigure> figures = sheet_figures(sheet, description);
   const Json document = data_sheet_json(sheet, description);
   for (const SheetFigure& figure : figures)

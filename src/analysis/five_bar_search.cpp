@@ -185,8 +185,7 @@ FiveBarSearchResult search_five_bars(const FiveBarSearch& search, const Effort& 
   result.complete = complete;
   for (const FiveBarScore& score : scores) {
     if (score.reachable == 0) continue;
-    result.points +=
-        static_cast<std::int64_t>(points.within(score.geometry.crank + score.geometry.coupler));
+    result.points += static_cast<std::int64_t>(points.within(score.geometry.crank + score.geometry.coupler));
     result.designs.push_back(score);
   }
   for (std::size_t d = 0; d < result.designs.size(); ++d) {

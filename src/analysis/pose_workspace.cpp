@@ -227,7 +227,7 @@ internal::RegionLattice lattice_of(const PoseFlood& flood) {
 double farthest(PoseRegion& region, const PoseFlood& flood, int axis, bool up, bool closely) {
   constexpr int kDirections = 14, kPatience = 3;
   const double sign = up ? 1.0 : -1.0;
-  const auto edge = static_cast<std::size_t>(2 * axis + (up ? 1 : 0));
+  const auto edge = 2 * static_cast<std::size_t>(axis) + (up ? 1U : 0U);
   Vector3 best = Vector3::Zero();
   double value = -std::numeric_limits<double>::infinity();
   for (const PoseFlood::Point& point : flood.points) {
@@ -352,7 +352,7 @@ double orientation_density(const Vector3& turn) {
 }
 
 void turn_round(const PoseGuide& guide, const Posture& seed, TurningRange& turning, const Effort& effort) {
-  const Pose origin = seed.tool();
+  const Pose& origin = seed.tool();
   for (const int axis : guide.turns()) turning.about[axis - 3] = turn_about(guide, origin, axis, seed);
   if (guide.turns().size() == 1) {
     turning.share = turning.about[guide.turns().front() - 3]->width() / (2.0 * pi);
@@ -374,7 +374,7 @@ void turn_round(const PoseGuide& guide, const Posture& seed, TurningRange& turni
 std::optional<Posture> posture_in(const PoseGuide& guide, const Matrix3& orientation, const Effort& effort) {
   constexpr std::size_t kTries = 400;
   const Posture& home = guide.home();
-  const Pose here = home.tool();
+  const Pose& here = home.tool();
   PoseGuide::Step step = guide.step(home, {.position = here.position, .rotation = orientation});
   if (step.inside) return step.posture;
   if (guide.moves().empty()) return std::nullopt;
@@ -486,7 +486,7 @@ PoseWorkspace pose_workspace(const Mechanism& mechanism, const PoseWorkspaceOpti
   const internal::RegionLattice lattice = lattice_of(first.flood);
   const double scale = lattice.spacing * *std::ranges::max_element(lattice.count);
   constexpr std::size_t kShapes = 2;
-  const std::size_t ends = static_cast<std::size_t>(2 * dimension),
+  const std::size_t ends = 2 * static_cast<std::size_t>(dimension),
                     shapes = dimension > 1 && options.shapes ? kShapes : 0;
   workspace.complete = internal::for_each_index(shapes + ends + 1, report(0.6, 0.9), [&](std::size_t task) {
     PoseRegion region(guide, chart, *seed);

@@ -10,8 +10,8 @@
 namespace zwidth {
 
 enum class RefineMethod {
-  sbplx,  ///< simplices in subspaces (Rowan 1990), by order alone: for figures with steps and kinks, and such
-          ///< as are undefined where a constraint is broken
+  sbplx,   ///< simplices in subspaces (Rowan 1990), by order alone: for figures with steps and kinks, and such
+           ///< as are undefined where a constraint is broken
   slsqp,   ///< quadratic programs of finite differences (Kraft 1988): the fastest where figures are smooth
   cobyla,  ///< linear models of objective and constraints (Powell 1994): where they have a meaning beyond the
            ///< constraints too

@@ -191,7 +191,7 @@ std::vector<Problem> arm_problems(const Mechanism& mechanism, const MechanismDes
                                        counted(best, "way", "ways"), platform_name(mechanism.platform()), rows);
   for (int first = 0; first + 3 < n; ++first) {
     int last = first;
-    while (last + 1 < n && mechanism.joints()[static_cast<std::size_t>(last + 1)].type == JointType::revolute &&
+    while (last + 1 < n && mechanism.joints()[static_cast<std::size_t>(last) + 1].type == JointType::revolute &&
            meeting(*anywhere, first, last + 1).second < 1e-9 * length)
       ++last;
     if (mechanism.joints()[static_cast<std::size_t>(first)].type != JointType::revolute || last < first + 3)

@@ -165,7 +165,9 @@ class PositioningClosedForm final : public ClosedForm {
     return arm_.branch_count() * (wrist_ ? wrist_->branch_count() : 1);
   }
   // Of an arm with a wrist the place that is solved for is not the tool.
-  PositioningForm parts() const noexcept { return wrist_ ? PositioningForm{} : PositioningForm{&arm_, &chain_}; }
+  PositioningForm parts() const noexcept {
+    return wrist_ ? PositioningForm{} : PositioningForm{&arm_, &chain_};
+  }
 
   // Of a rigid tool a position alone leaves joints open.
   bool covers(const SolveOptions& options) const noexcept override {

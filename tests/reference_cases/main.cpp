@@ -66,7 +66,9 @@ std::vector<double> Inputs::list(const std::string& key) const {
   return values;
 }
 
-std::size_t Inputs::count(const std::string& key) const { return required(values_, key).size(); }
+std::size_t Inputs::count(const std::string& key) const {
+  return required(values_, key).size();
+}
 
 bool Inputs::flag(const std::string& key) const {
   return required(values_, key).get<bool>();

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
-#include <system_error>
 #include <thread>
 
 #include "interrupt.h"
@@ -61,20 +60,6 @@ std::map<std::string, double> weights_of(const OptimiseArguments& arguments, con
     weights[name] = *value.value;
   }
   return weights;
-}
-
-fs::path prepared(const std::string& wanted, const std::string& name) {
-  const fs::path directory = wanted.empty() ? fs::path("optimise") / name : fs::path(wanted);
-  std::error_code error;
-  if (fs::exists(directory, error) && !fs::is_directory(directory, error)) {
-    throw InputError(fmt::format("-o {}: is a file; name a directory", directory.string()));
-  }
-  fs::create_directories(directory / "figures", error);
-  if (error) {
-    throw MachineError(fmt::format("cannot make the directory {}: {}; name another with -o", directory.string(),
-                                   error.message()));
-  }
-  return directory;
 }
 
 /// Which design of the front, by the study's rule or by weights.
@@ -291,7 +276,7 @@ int optimise(OptimiseArguments arguments, const Terminal& terminal) {
       return kDone;
     }
   }
-  const fs::path directory = prepared(arguments.directory, model->study().name);
+  const fs::path directory = results_directory(arguments.directory, fs::path("optimise") / model->study().name);
   StudyOutcome outcome = run_search(*model, arguments, directory, ranks ? &*ranks : nullptr);
   StudyEvaluator evaluator(*model);
   for (std::size_t i = 0; i < outcome.result.front.size(); ++i) {

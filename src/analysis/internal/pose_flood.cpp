@@ -63,7 +63,7 @@ PoseFlood flood_poses(const PoseGuide& guide, const PoseChart& chart, const Post
     PoseGuide::Step step = guide.step(seed, chart.at(coordinates(at)));
     if (!step.inside) continue;
     if (options.figure) options.figure(*step.posture, step.rates, row);
-    add(at, std::move(*step.posture), row);
+    add(at, *step.posture, row);
   }
 
   std::unordered_map<LatticeIndex, std::size_t, LatticeIndexHash> asked;
@@ -132,7 +132,7 @@ PoseFlood flood_poses(const PoseGuide& guide, const PoseChart& chart, const Post
     for (std::size_t c = 0; c < candidates.size(); ++c) {
       Candidate& candidate = candidates[c];
       if (!candidate.posture) continue;
-      add(candidate.at, std::move(*candidate.posture), std::span(values).subspan(c * figures, figures));
+      add(candidate.at, *candidate.posture, std::span(values).subspan(c * figures, figures));
     }
     if (effort.progress && options.expected > 0) {
       effort.progress(
@@ -165,9 +165,11 @@ FloodMeasure measure(const PoseFlood& flood, const std::function<double(const Ve
         const float exit = point.exit[static_cast<std::size_t>(edge)];
         length += std::isnan(exit) ? 0.5 : static_cast<double>(exit);
       }
-      const auto odd = [&](int k) { return point.at[static_cast<std::size_t>((axis + k) % 3)] & 1; };
+      const auto odd = [&](int k) {
+        return static_cast<std::size_t>(point.at[static_cast<std::size_t>((axis + k) % 3)] & 1);
+      };
       whole[axis] += value * length * cell;
-      parts[axis][static_cast<std::size_t>(2 * odd(1) + odd(2))] += value * length * cell;
+      parts[axis][2 * odd(1) + odd(2)] += value * length * cell;
     }
   }
   for (int axis = 0; axis < dimension; ++axis) result.value += whole[axis] / dimension;

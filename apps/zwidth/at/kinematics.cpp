@@ -42,12 +42,13 @@ void write_joints(const Situation& at, Answer& answer) {
     const std::string range = limited ? fmt::format("{} … {}", joint_text(at.mechanism, j, joint.range.min),
                                                     joint_text(at.mechanism, j, joint.range.max))
                                       : "";
-    if (active || answer.wants("passive_joints"))
+    if (active || answer.wants("passive_joints")) {
       rows.push_back({name, joint_text(at.mechanism, j, at.posture.joints()[j]),
                       !active      ? "passive"
                       : joint.free ? "free"
                                    : "active",
                       range});
+    }
   }
   answer.page().table({"joint", "value", "", "range"}, rows);
   answer.put("joint_names", names);

@@ -1,6 +1,8 @@
 #include "zwidth/design/workers.h"
 
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <gtest/gtest.h>
 #include <limits>
 #include <mutex>
@@ -55,18 +57,24 @@ TEST(Workers, EveryRowIsThatOfItsDesignForAnyNumberOfThreads) {
 
 TEST(Workers, SlowRowsAreSharedAmongThreads) {
   if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core";
+  // Every row waits for a second thread to take one, which ends as soon as it does.
   std::mutex mutex;
+  std::condition_variable came;
   std::set<std::thread::id> threads;
-  const BatchEvaluation evaluate = on_workers(1, 1,
-                                              [&]() -> DesignEvaluation {
-                                                return [&](std::span<const double> x, std::span<double> f) {
-                                                  std::this_thread::sleep_for(std::chrono::milliseconds(2));
-                                                  const std::lock_guard lock(mutex);
-                                                  threads.insert(std::this_thread::get_id());
-                                                  f[0] = x[0];
-                                                };
-                                              },
-                                              {.threads = 2});
+  bool alone = false;
+  const BatchEvaluation evaluate =
+      on_workers(1, 1,
+                 [&]() -> DesignEvaluation {
+                   return [&](std::span<const double> x, std::span<double> f) {
+                     std::unique_lock lock(mutex);
+                     threads.insert(std::this_thread::get_id());
+                     came.notify_all();
+                     const auto both = [&] { return alone || threads.size() == 2; };
+                     if (!came.wait_for(lock, std::chrono::seconds(20), both)) alone = true;
+                     f[0] = x[0];
+                   };
+                 },
+                 {.threads = 2});
   std::vector<double> outcomes(50);
   EXPECT_TRUE(evaluate(std::vector<double>(50, 1.0), outcomes));
   EXPECT_EQ(threads.size(), 2u);

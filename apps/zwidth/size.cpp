@@ -112,28 +112,28 @@ LoadDescription parsed_load(const SizeArguments& arguments, const Description& d
                                  [&](const LoadDescription& load) { return load.name == text; });
   const bool numbers = text.find(',') != text.npos || text.find_first_of("+-.0123456789") == 0;
   if (known || !numbers) return named("--load", text, description.loads, "load");
-  const auto commas = std::count(text.begin(), text.end(), ',');
-  // Of a tool in the plane x, y two will do, of one that does not turn a force is all.
-  const bool in_plane = mechanism.linear_rows() == 2;
-  if (commas != 2 && commas != 5 && !(in_plane && commas == 1)) {
-    throw InputError(fmt::format("--load \"{}\": has {} {}; give {}", text, commas + 1,
-                                 commas == 0 ? "entry" : "entries",
-                                 in_plane                 ? "two (a force along x, y) or three"
-                                 : mechanism.tool_turns() ? "three (a force) or six (a force and a moment)"
-                                                          : "three (a force); the tool takes no moment"));
+  const auto entries = std::count(text.begin(), text.end(), ',') + 1;
+  const bool in_plane = mechanism.linear_rows() == 2, turns = mechanism.tool_turns();
+  // A tool in the plane x, y takes a force there, and if it turns a moment about z: the rows that `at` takes.
+  std::vector<int> rows{0, 1};
+  if (in_plane && turns && entries == 3) rows.push_back(5);
+  if (!in_plane) rows = {0, 1, 2};
+  if (!in_plane && turns && entries == 6) rows = {0, 1, 2, 3, 4, 5};
+  if (static_cast<std::size_t>(entries) != rows.size()) {
+    throw InputError(fmt::format("--load \"{}\": has {} {}; give {}", text, entries,
+                                 entries == 1 ? "entry" : "entries",
+                                 in_plane && turns ? "two (a force along x, y) or three (and a moment about z)"
+                                 : in_plane        ? "two, a force along x, y"
+                                 : turns           ? "three (a force) or six (a force and a moment)"
+                                         : "three, a force: the tool does not turn, so it takes no moment"));
   }
-  std::vector<Dimension> dimensions(commas == 1 ? 2 : 3, Dimension::force);
-  if (commas == 5) dimensions.insert(dimensions.end(), 3, Dimension::torque);
+  std::vector<Dimension> dimensions;
+  for (const int row : rows) dimensions.push_back(row < 3 ? Dimension::force : Dimension::torque);
   const std::vector<double> values = parsed("--load", text, dimensions);
   LoadDescription load;
   load.name = text;
-  load.force = Vector3(values[0], values[1], commas > 1 ? values[2] : 0.0);
-  if (commas == 5) load.moment = Vector3(values[3], values[4], values[5]);
-  if (commas == 5 && !mechanism.tool_turns()) {
-    throw InputError(
-        fmt::format("--load \"{}\": the tool of {} does not turn, so it takes no moment; give three "
-                    "numbers",
-                    text, description.name));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    (rows[i] < 3 ? load.force : load.moment)[rows[i] % 3] = values[i];
   }
   load.kind = chosen("--kind", arguments.kind, load_kind_names());
   load.moment_frame = chosen("--moment-frame", arguments.moment_frame, moment_frame_names());

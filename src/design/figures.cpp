@@ -127,9 +127,16 @@ double mass_figure(PostureFigures& at, const FigureOptions&) {
   return of_mass(at, with_drives, of);
 }
 
+constexpr FigureOption kElastic[] = {
+    {"drives", 1, Dimension::number,
+     "0 takes the drives as rigid; else they give where their stiffness is known"}};
+const std::optional<Compliance>& compliance_of(PostureFigures& at, const FigureOptions& options) {
+  return at.compliance(options.get("drives", kElastic[0].otherwise) != 0.0);
+}
+
 // What the tool gives along its linear axes under pure forces, the tool turning as it likes.
-std::optional<ToolMatrix> linear_compliance(PostureFigures& at) {
-  const std::optional<Compliance>& compliance = at.compliance();
+std::optional<ToolMatrix> linear_compliance(PostureFigures& at, const FigureOptions& options) {
+  const std::optional<Compliance>& compliance = compliance_of(at, options);
   if (!compliance) return std::nullopt;
   const Mechanism& mechanism = at.device().mechanism();
   const int n = mechanism.linear_rows();
@@ -142,35 +149,35 @@ std::optional<ToolMatrix> linear_compliance(PostureFigures& at) {
   }
   return C;
 }
-double stiffness_min(PostureFigures& at, const FigureOptions&) {
-  const std::optional<ToolMatrix> C = linear_compliance(at);
+double stiffness_min(PostureFigures& at, const FigureOptions& options) {
+  const std::optional<ToolMatrix> C = linear_compliance(at, options);
   return C ? 1.0 / largest(*C) : kUndefined;
 }
-double stiffness_max(PostureFigures& at, const FigureOptions&) {
-  const std::optional<ToolMatrix> C = linear_compliance(at);
+double stiffness_max(PostureFigures& at, const FigureOptions& options) {
+  const std::optional<ToolMatrix> C = linear_compliance(at, options);
   return C ? finite_or_undefined(1.0 / smallest(*C)) : kUndefined;
 }
 double held_stiffness_determinant(PostureFigures& at, const FigureOptions&) {
-  if (at.stiffness().rigid) return kUndefined;
-  return stiffness_indices(at.stiffness().matrix).determinant_translation;
+  if (at.stiffness(false).rigid) return kUndefined;
+  return stiffness_indices(at.stiffness(false).matrix).determinant_translation;
 }
 double stiffness_norm(PostureFigures& at, const FigureOptions&) {
-  if (at.stiffness().rigid) return kUndefined;
-  return stiffness_indices(at.stiffness().matrix).frobenius;
+  if (at.stiffness(false).rigid) return kUndefined;
+  return stiffness_indices(at.stiffness(false).matrix).frobenius;
 }
 double deflection(PostureFigures& at, const FigureOptions& options) {
-  const std::optional<Compliance>& compliance = at.compliance();
+  const std::optional<Compliance>& compliance = compliance_of(at, options);
   return compliance ? (compliance->matrix * options.load).head<3>().norm() : kUndefined;
 }
 double tilt(PostureFigures& at, const FigureOptions& options) {
-  const std::optional<Compliance>& compliance = at.compliance();
+  const std::optional<Compliance>& compliance = compliance_of(at, options);
   return compliance ? (compliance->matrix * options.load).tail<3>().norm() : kUndefined;
 }
 
 // With the drives held: the links' mass on what gives way.
-double natural_frequency(PostureFigures& at, const FigureOptions&) {
+double natural_frequency(PostureFigures& at, const FigureOptions& options) {
   const Mechanism& mechanism = at.device().mechanism();
-  const std::optional<Compliance>& compliance = at.compliance();
+  const std::optional<Compliance>& compliance = compliance_of(at, options);
   if (!compliance) return kUndefined;
   const std::optional<ToolMatrix> K = felt_stiffness(mechanism, *compliance);
   if (!K || at.link_mass().llt().info() != Eigen::Success) return kUndefined;
@@ -393,14 +400,15 @@ using FD = FigureDefinition;
 
 constexpr FD of_posture(std::string_view name, std::string_view unit, std::string_view meaning,
                         double (*of)(PostureFigures&, const FigureOptions&), bool needs_drives = false,
-                        bool needs_load = false) {
+                        bool needs_load = false, std::span<const FigureOption> options = {}) {
   return {.name = name,
           .unit = unit,
           .meaning = meaning,
           .of_posture = true,
           .needs_drives = needs_drives,
           .needs_load = needs_load,
-          .of = of};
+          .of = of,
+          .options = options};
 }
 constexpr FD of_device(std::string_view name, std::string_view unit, std::string_view meaning,
                        double (*of)(const BuiltDevice&, const FigureOptions&), bool needs_drives = false,
@@ -417,6 +425,7 @@ constexpr FD of_device(std::string_view name, std::string_view unit, std::string
 constexpr bool kDrives = true;
 constexpr bool kNoDrives = false;
 constexpr bool kLoad = true;
+constexpr bool kNoLoad = false;
 
 }  // namespace
 
@@ -471,32 +480,40 @@ const std::optional<ToolMatrix>& PostureFigures::apparent_mass(bool with_drives)
   return *kept;
 }
 
-const Stiffness& PostureFigures::stiffness() {
-  if (!stiffness_) {
-    const Mechanism& mechanism = device_->mechanism();
-    StiffnessOptions options;
-    options.drive_stiffness =
-        ActiveVector::Constant(mechanism.active_count(), std::numeric_limits<double>::infinity());
+const Stiffness& PostureFigures::stiffness(bool with_drives) {
+  std::optional<Stiffness>& kept = stiffness_[with_drives ? 1 : 0];
+  if (kept) return *kept;
+  StiffnessOptions options;
+  const Mechanism& mechanism = device_->mechanism();
+  if (with_drives && !device_->drives().empty()) {
     const ActiveVector active = posture_->active();
-    for (std::size_t i = 0; i < device_->drives().size(); ++i) {
-      const std::optional<Drive>& drive = device_->drives()[i];
-      const auto known = drive ? drive->joint_stiffness(active[static_cast<Eigen::Index>(i)]) : std::nullopt;
-      if (known) options.drive_stiffness[static_cast<Eigen::Index>(i)] = *known;
+    ActiveVector stiffness =
+        ActiveVector::Constant(mechanism.active_count(), std::numeric_limits<double>::infinity());
+    bool all = true;
+    for (int i = 0; i < stiffness.size() && all; ++i) {
+      if (mechanism.is_free(i)) continue;
+      const std::optional<Drive>& drive = device_->drives()[static_cast<std::size_t>(i)];
+      const std::optional<double> known = drive ? drive->joint_stiffness(active[i]) : std::nullopt;
+      all = known.has_value();
+      if (known) stiffness[i] = *known;
     }
-    stiffness_ = zwidth::stiffness(*posture_, options);
+    if (all) options.drive_stiffness = stiffness;
   }
-  return *stiffness_;
+  kept = zwidth::stiffness(*posture_, options);
+  return *kept;
 }
 
-const std::optional<Compliance>& PostureFigures::compliance() {
-  if (!compliance_) {
-    compliance_.emplace();
-    if (!stiffness().rigid) {
-      Compliance found = zwidth::compliance(stiffness(), device_->mechanism().characteristic_length());
-      if (!found.free) *compliance_ = found;
+const std::optional<Compliance>& PostureFigures::compliance(bool with_drives) {
+  std::optional<std::optional<Compliance>>& kept = compliance_[with_drives ? 1 : 0];
+  if (!kept) {
+    kept.emplace();
+    const Stiffness& K = stiffness(with_drives);
+    if (!K.rigid) {
+      Compliance found = zwidth::compliance(K, device_->mechanism().characteristic_length());
+      if (!found.free) *kept = found;
     }
   }
-  return *compliance_;
+  return *kept;
 }
 
 double FigureOptions::get(const std::string& name, double otherwise) const {
@@ -538,15 +555,20 @@ std::span<const FigureDefinition> figure_definitions() {
                  mass_figure<false, largest>),
       of_posture("link_mass_determinant", "kg^n", "determinant of the apparent mass of the links",
                  mass_figure<false, determinant>),
-      of_posture("stiffness_min", "N/m", "force per displacement along the softest direction", stiffness_min),
-      of_posture("stiffness_max", "N/m", "force per displacement along the stiffest direction", stiffness_max),
+      of_posture("stiffness_min", "N/m", "force per displacement along the softest direction", stiffness_min,
+                 kDrives, kNoLoad, kElastic),
+      of_posture("stiffness_max", "N/m", "force per displacement along the stiffest direction", stiffness_max,
+                 kDrives, kNoLoad, kElastic),
       of_posture("held_stiffness_determinant", "(N/m)^3",
-                 "determinant of the translational stiffness with the tool kept from turning",
+                 "determinant of the links' translational stiffness with the tool kept from turning",
                  held_stiffness_determinant),
-      of_posture("stiffness_norm", "mixed", "Frobenius norm of the whole stiffness matrix", stiffness_norm),
-      of_posture("deflection", "m", "displacement of the tool under a load", deflection, kNoDrives, kLoad),
-      of_posture("tilt", "rad", "rotation of the tool under a load", tilt, kNoDrives, kLoad),
-      of_posture("natural_frequency", "Hz", "lowest natural frequency with the drives held", natural_frequency),
+      of_posture("stiffness_norm", "mixed", "Frobenius norm of the whole stiffness matrix of the links",
+                 stiffness_norm),
+      of_posture("deflection", "m", "displacement of the tool under a load", deflection, kDrives, kLoad,
+                 kElastic),
+      of_posture("tilt", "rad", "rotation of the tool under a load", tilt, kDrives, kLoad, kElastic),
+      of_posture("natural_frequency", "Hz", "lowest natural frequency with the drives held", natural_frequency,
+                 kDrives, kNoLoad, kElastic),
       of_posture("resolution", "m", "largest tool step when every joint moves by its encoder's step",
                  resolution, kDrives),
       of_device("moving_mass", "kg", "mass of all bodies", total_mass),

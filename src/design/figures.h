@@ -54,10 +54,11 @@ class PostureFigures {
   const ActiveMatrix& link_mass();
   /// Lambda of the linear rows, with the drives' inertia or without; empty where it is not definite.
   const std::optional<ToolMatrix>& apparent_mass(bool with_drives);
-  /// Links that are beams and drives whose stiffness is known; `rigid` without either.
-  const Stiffness& stiffness();
+  /// Of links that are beams, and of the drives if that of all is known, as `at` has it; `rigid` without
+  /// either.
+  const Stiffness& stiffness(bool with_drives);
   /// Nothing where the tool is free, or nothing gives way.
-  const std::optional<Compliance>& compliance();
+  const std::optional<Compliance>& compliance(bool with_drives);
 
  private:
   const BuiltDevice* device_;
@@ -66,8 +67,8 @@ class PostureFigures {
   std::optional<Dexterity> dexterity_;
   std::optional<ActiveMatrix> link_mass_;
   std::optional<std::optional<ToolMatrix>> apparent_mass_[2];
-  std::optional<Stiffness> stiffness_;
-  std::optional<std::optional<Compliance>> compliance_;
+  std::optional<Stiffness> stiffness_[2];
+  std::optional<std::optional<Compliance>> compliance_[2];
 };
 
 /// What a figure may be told beside the posture.

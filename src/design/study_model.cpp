@@ -289,6 +289,11 @@ class Planner {
       wrong(place, fmt::format("\"{}\"", text), parsed.rule, parsed.advice);
       return;
     }
+    if (parsed.names.empty() && std::isnan(Expression(text, {})())) {
+      wrong(place, fmt::format("\"{}\"", text), "has no value: it divides by zero, or the like",
+            "change its numbers");
+      return;
+    }
     std::vector<std::size_t> used;
     for (const std::string& name : parsed.names) {
       const auto found = plan_.index.find(name);

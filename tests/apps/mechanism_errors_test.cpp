@@ -242,9 +242,8 @@ TEST(MechanismErrors, ALoadSaysWhatItIsMadeOf) {
                {"give 3, a force along x, y, z, or 6 with a moment about rx, ry, rz"});
   expect_words({"at", "five-bar", "--joints", "120deg,60deg", "--load", "1,2,3"},
                {"give 2, a force along x, y"});
-  expect_words({"size", "five-bar", "--load", "1"}, {"two (a force along x, y)"});
-  EXPECT_EQ(run({"size", "five-bar", "--load", "1,2", "--json"}).json()["drives"],
-            run({"size", "five-bar", "--load", "1,2,0", "--json"}).json()["drives"]);
+  expect_words({"size", "five-bar", "--load", "1"}, {"two, a force along x, y"});
+  expect_words({"size", "five-bar", "--load", "1,2,0"}, {"two, a force along x, y"});
 }
 
 }  // namespace

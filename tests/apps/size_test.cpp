@@ -147,6 +147,7 @@ TEST(Size, WrongLoadsAndPosturesAreExplained) {
   const Mistake mistakes[] = {
       {{"size", "delta", "--load", "1,2"}, "has 2 entries"},
       {{"size", "delta", "--load", "0,0,1,0,0,1"}, "does not turn"},
+      {{"size", "five-bar", "--load", "1,2,3"}, "has 3 entries"},
       {{"size", "delta", "--load", "push"}, "has no [[load]]"},
       {{"size", "seven-dof", "--load", "nan,0,0"}, "nan"},
       {{"size", "seven-dof", "--load", "10 N along w"}, "10 N along w"},

@@ -100,6 +100,24 @@ TEST(Figures, DeflectionGrowsWithTheLoad) {
   EXPECT_LE(at(*device, joints, "stiffness_min"), at(*device, joints, "stiffness_max"));
 }
 
+TEST(Figures, DrivesGiveUnlessTheyCountAsRigid) {
+  const Description description = read_description("r-cube", {}, catalogue());
+  const auto device = BuiltDevice::try_make(description, true);
+  const auto links = BuiltDevice::try_make(description, false);
+  ASSERT_TRUE(device && links);
+  const ActiveVector joints = Vector3::Constant(0.4);
+  FigureOptions rigid;
+  rigid.further["drives"] = 0.0;
+  EXPECT_EQ(at(*device, joints, "stiffness_min", rigid), at(*links, joints, "stiffness_min"));
+  EXPECT_LT(at(*device, joints, "stiffness_min"), at(*device, joints, "stiffness_min", rigid));
+  EXPECT_LT(at(*device, joints, "natural_frequency"), at(*device, joints, "natural_frequency", rigid));
+  // A delta without beams gives in its drives alone.
+  const Description delta = read_description("delta", {}, catalogue());
+  const auto built = BuiltDevice::try_make(delta, true);
+  ASSERT_TRUE(built);
+  EXPECT_GT(at(*built, Vector3::Constant(0.4), "natural_frequency"), 10.0);
+}
+
 TEST(Figures, OfTheDeviceAreThoseOfTheSheet) {
   const Description description = read_description("five-bar", {}, catalogue());
   const auto device = BuiltDevice::try_make(description, true);

@@ -264,6 +264,7 @@ TEST(StudyProblems, RefusesWhatMakesNoSense) {
       {good + "[[derived]]\nname = \"p\"\nvalue = \"q\"\n[[derived]]\nname = \"q\"\nvalue = \"p + 1\"\n",
        "follows from itself"},
       {good + "[[derived]]\nname = \"p\"\nvalue = \"1 +\"\n", "is no expression"},
+      {good + "[[derived]]\nname = \"p\"\nvalue = \"2 mm / (1 - 1)\"\n", "has no value"},
       {good + "[[measure]]\nname = \"k\"\nfigure = \"condition_number\"\n", "figure of a posture"},
       {good + "[[measure]]\nname = \"k\"\nfigure = \"moving_mass\"\nat = \"home\"\n", "device as a whole"},
       {good + "[[measure]]\nname = \"k\"\nfigure = \"condition_number\"\nat = \"hme\"\n", "no posture"},

@@ -142,7 +142,7 @@ std::vector<SheetFigure> outcome_figures(const StudyOutcome& outcome, const Stud
           [&](double value) {
             DesignValue shown = outcome.front.front().variables[v];
             shown.value = value;
-            if (!shown.part.empty()) shown.part = fmt::format("part {}", value + 1.0);
+            if (!shown.part.empty()) shown.part = study.variables[v].parts[static_cast<std::size_t>(value)];
             return value_text(shown);
           });
     }
@@ -317,14 +317,14 @@ std::string page(const StudyOutcome& outcome, const StudyModel& model,
       "<body>\n<div class=\"page\">\n<header><h1>{3}</h1><p>Study <code>{0}</code> of <code>{4}</code></p>{5}"
       "</header>\n<nav aria-label=\"Contents\"><b>Contents</b><ol><li><a href=\"#chosen\">Chosen "
       "design</a></li>{6}"
-      "<li><a href=\"#search\">Search</a></li></ol></nav>\n<main>\n{7}</main>\n<footer>Computed by zwidth {8}. "
-      "All "
-      "designs are in <a href=\"pareto.csv\">pareto.csv</a>, everything else in <a "
-      "href=\"pareto.json\">pareto.json</a>.</footer>\n</div>\n</body>\n</html>\n",
+      "{9}<li><a href=\"#search\">Search</a></li></ol></nav>\n<main>\n{7}</main>\n<footer>Computed by zwidth "
+      "{8}. {10}Every "
+      "number is in <a href=\"pareto.json\">pareto.json</a>.</footer>\n</div>\n</body>\n</html>\n",
       escaped(study.name), page_style(), figure_style(), escaped(study.title), escaped(study.device),
       study.source.empty() ? "" : fmt::format("<p>Source: {}</p>", escaped(study.source)),
       outcome.chosen && study.objectives.size() > 1 ? "<li><a href=\"#front\">Trade-off</a></li>" : "", body,
-      ZWIDTH_VERSION);
+      ZWIDTH_VERSION, outcome.tolerances ? "<li><a href=\"#tolerances\">Tolerances</a></li>" : "",
+      outcome.front.empty() ? "" : "All designs are in <a href=\"pareto.csv\">pareto.csv</a>. ");
 }
 
 /// The chosen design as a device of its own.

@@ -135,6 +135,15 @@ Checkpoint read_one(const std::filesystem::path& file) {
   return unpacked(payload);
 }
 
+bool is_whole(const std::filesystem::path& file) {
+  try {
+    read_one(file);
+    return true;
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
 void check_identity(const Checkpoint& checkpoint, const std::vector<std::string>& identity,
                     const std::filesystem::path& file) {
   const auto line = [](const std::vector<std::string>& lines, std::size_t i) {
@@ -158,13 +167,15 @@ void write_checkpoint(const Checkpoint& checkpoint, const std::filesystem::path&
   body.put(payload);
   const std::filesystem::path fresh = beside(file, ".new");
   write_through(kMagic + body.bytes(), fresh);
-  // The old contents get a second name before the new ones take their place, so that FILE is never missing.
+  // The old contents get a second name before the new ones take its place, so that FILE is never missing. What
+  // is broken does not push out the one before.
   const std::filesystem::path previous = beside(file, ".previous");
   std::error_code error;
-  std::filesystem::remove(previous, error);
-  std::filesystem::create_hard_link(file, previous, error);
-  if (error)
-    std::filesystem::rename(file, previous, error);  // no such links here; the first time there is no file
+  if (is_whole(file)) {
+    std::filesystem::remove(previous, error);
+    std::filesystem::create_hard_link(file, previous, error);
+    if (error) std::filesystem::rename(file, previous, error);  // no such links here
+  }
   std::filesystem::rename(fresh, file, error);
   if (error) {
     throw std::runtime_error("cannot write the checkpoint " + file.string() + ": " + error.message());

@@ -359,11 +359,13 @@ class Answer {
                                                         loads_.size() == 1 ? "" : "s")
                                           : where_);
     if (one_load) {
-      const Vector3& f = loads_[0].force;
+      const Vector3 &f = loads_[0].force, &m = loads_[0].moment;
+      const std::string moment =
+          m.isZero(0.0) ? "" : fmt::format(" and ({:g}, {:g}, {:g}) N m", m.x(), m.y(), m.z());
       sheet_.paragraph(
-          fmt::format("For the {} load ({:g}, {:g}, {:g}) N on the hand, {}, on top of the device's own "
+          fmt::format("For the {} load ({:g}, {:g}, {:g}) N{} on the hand, {}, on top of the device's own "
                       "weight.",
-                      to_string(loads_[0].kind), f.x(), f.y(), f.z(), where_));
+                      to_string(loads_[0].kind), f.x(), f.y(), f.z(), moment, where_));
     } else {
       sheet_.paragraph(
           fmt::format("For every load {}, on top of the device's own weight: the worst of each kind.", where_));

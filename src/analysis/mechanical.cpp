@@ -26,22 +26,6 @@ void put(MechanicalValues& values, MechanicalFigure first, int offset, double va
   values[static_cast<std::size_t>(first) + static_cast<std::size_t>(offset)] = value;
 }
 
-// Of each drive where its joint stands; empty unless all that are needed are known.
-ActiveVector drive_stiffness(const Posture& posture, const Drives& drives) {
-  const Mechanism& mechanism = posture.mechanism();
-  const ActiveVector joints = posture.active();
-  ActiveVector stiffness =
-      ActiveVector::Constant(mechanism.active_count(), std::numeric_limits<double>::infinity());
-  for (int i = 0; i < mechanism.active_count(); ++i) {
-    if (mechanism.is_free(i)) continue;
-    const auto& drive = drives[static_cast<std::size_t>(i)];
-    const std::optional<double> known = drive ? drive->joint_stiffness(joints[i]) : std::nullopt;
-    if (!known) return {};
-    stiffness[i] = *known;
-  }
-  return stiffness;
-}
-
 // Least and largest of a symmetric matrix.
 Interval principal(const ToolMatrix& A) {
   if (A.rows() == 3) {
@@ -124,6 +108,21 @@ struct Builders {
 };
 
 }  // namespace
+
+ActiveVector drive_stiffness(const Posture& posture, const Drives& drives) {
+  const Mechanism& mechanism = posture.mechanism();
+  const ActiveVector joints = posture.active();
+  ActiveVector stiffness =
+      ActiveVector::Constant(mechanism.active_count(), std::numeric_limits<double>::infinity());
+  for (int i = 0; i < mechanism.active_count(); ++i) {
+    if (mechanism.is_free(i)) continue;
+    const auto& drive = drives[static_cast<std::size_t>(i)];
+    const std::optional<double> known = drive ? drive->joint_stiffness(joints[i]) : std::nullopt;
+    if (!known) return {};
+    stiffness[i] = *known;
+  }
+  return stiffness;
+}
 
 const FigureInfo& mechanical_figure_info(int index) {
   static constexpr std::array<FigureInfo, kMechanicalFigureCount> kInfo = {{

@@ -44,6 +44,10 @@ const FigureInfo& mechanical_figure_info(int index);
 
 using Drives = std::vector<std::optional<Drive>>;  ///< one per active joint, where there is one
 
+/// Of each active joint's drive where it stands [N m/rad, N/m], infinite for a joint that the hand moves; empty
+/// unless all that are needed are known. REQUIRES: one entry of `drives` per active joint.
+ActiveVector drive_stiffness(const Posture& posture, const Drives& drives);
+
 /// The stiffness of a posture from all that is known to give, with what it took of the drives.
 struct KnownStiffness {
   Stiffness stiffness;

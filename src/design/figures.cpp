@@ -14,6 +14,7 @@
 #include "zwidth/analysis/five_bar_search.h"
 #include "zwidth/analysis/force.h"
 #include "zwidth/analysis/joint_torque.h"
+#include "zwidth/analysis/mechanical.h"
 #include "zwidth/analysis/posture_sweep.h"
 #include "zwidth/analysis/resolution.h"
 #include "zwidth/analysis/sizing.h"
@@ -484,20 +485,8 @@ const Stiffness& PostureFigures::stiffness(bool with_drives) {
   std::optional<Stiffness>& kept = stiffness_[with_drives ? 1 : 0];
   if (kept) return *kept;
   StiffnessOptions options;
-  const Mechanism& mechanism = device_->mechanism();
   if (with_drives && !device_->drives().empty()) {
-    const ActiveVector active = posture_->active();
-    ActiveVector stiffness =
-        ActiveVector::Constant(mechanism.active_count(), std::numeric_limits<double>::infinity());
-    bool all = true;
-    for (int i = 0; i < stiffness.size() && all; ++i) {
-      if (mechanism.is_free(i)) continue;
-      const std::optional<Drive>& drive = device_->drives()[static_cast<std::size_t>(i)];
-      const std::optional<double> known = drive ? drive->joint_stiffness(active[i]) : std::nullopt;
-      all = known.has_value();
-      if (known) stiffness[i] = *known;
-    }
-    if (all) options.drive_stiffness = stiffness;
+    options.drive_stiffness = drive_stiffness(*posture_, device_->drives());
   }
   kept = zwidth::stiffness(*posture_, options);
   return *kept;

@@ -138,7 +138,6 @@ class Planner {
                 "write integer = true");
         }
       }
-      setters_.push_back(variable.keys);
     }
     for (std::size_t i = 0; i < study.derived.size(); ++i) {
       claim_numbers(study.derived[i].keys, at("derived", i, "key"));
@@ -447,8 +446,7 @@ class Planner {
   StudyModel::Plan plan_;
   Description device_;  // whose slots are looked at
   std::vector<NameKind> kinds_;
-  std::set<std::string> claimed_;  // keys that are set
-  std::vector<std::vector<std::string>> setters_;
+  std::set<std::string> claimed_;                             // keys that are set
   std::map<std::string, std::vector<std::size_t>> names_of_;  // of each expression's text
   std::vector<int> state_;
   std::vector<std::size_t> after_;

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 
+#include "even_study.h"
 #include "run_command.h"
 
 /// What befalls long runs: they are killed, interrupted, resumed, spread over ranks, and asked impossible
@@ -13,39 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Long enough to be interrupted, and quick all the same.
-constexpr const char* kLong = R"toml([study]
-name = "long"
-device = "five-bar"
-[search]
-population = 20
-generations = 150
-[[variable]]
-key = "mechanism.crank"
-min = "8 cm"
-max = "14 cm"
-[[variable]]
-key = "mechanism.coupler"
-min = "9 cm"
-max = "18 cm"
-[[measure]]
-name = "condition"
-figure = "condition_number"
-over = "box"
-position = [0, "150 mm", 0]
-size = ["60 mm", "60 mm", 0]
-points = 3
-statistic = "max"
-[[objective]]
-name = "worst"
-minimise = "condition"
-[[objective]]
-name = "length"
-minimise = "crank + coupler"
-[[constraint]]
-name = "well conditioned"
-value = "condition"
-max = 5
-)toml";
+const std::string kLong = even_study(150);
 
 // Five designs by number, and what they are to be.
 std::string numbered(const std::string& objective, const std::string& more = "") {

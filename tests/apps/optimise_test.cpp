@@ -2,44 +2,13 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "even_study.h"
 #include "run_command.h"
 
 namespace zwidth::testing {
 namespace {
 
-constexpr const char* kEven = R"toml([study]
-name = "even"
-device = "five-bar"
-[search]
-population = 20
-generations = 8
-[[variable]]
-key = "mechanism.crank"
-min = "8 cm"
-max = "14 cm"
-[[variable]]
-key = "mechanism.coupler"
-min = "9 cm"
-max = "18 cm"
-[[measure]]
-name = "condition"
-figure = "condition_number"
-over = "box"
-position = [0, "150 mm", 0]
-size = ["60 mm", "60 mm", 0]
-points = 3
-statistic = "max"
-[[objective]]
-name = "worst"
-minimise = "condition"
-[[objective]]
-name = "length"
-minimise = "crank + coupler"
-[[constraint]]
-name = "well conditioned"
-value = "condition"
-max = 5
-[[tolerance]]
+const std::string kEven = even_study(8) + R"toml([[tolerance]]
 key = "mechanism.crank"
 half_width = "0.1 mm"
 )toml";

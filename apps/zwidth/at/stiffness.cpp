@@ -7,6 +7,7 @@
 
 #include "section.h"
 
+#include "zwidth/analysis/mechanical.h"
 #include "zwidth/mechanism/dynamics.h"
 #include "zwidth/mechanism/loaded_stiffness.h"
 #include "zwidth/mechanism/vibration.h"
@@ -20,22 +21,6 @@ namespace {
 constexpr const char* kNoBeams =
     "not given by the source: a leg has neither a link that is a beam (tube, bar) nor a drive of known "
     "stiffness";
-
-/// Stiffness of each active joint's drive where it stands; empty unless all that need one are known.
-ActiveVector drive_stiffness(const Situation& at) {
-  const Mechanism& mechanism = at.mechanism;
-  ActiveVector stiffness(mechanism.active_count());
-  const ActiveVector joints = at.posture.active();
-  for (int i = 0; i < mechanism.active_count(); ++i) {
-    stiffness[i] = HUGE_VAL;
-    if (mechanism.is_free(i)) continue;
-    const auto& drive = at.model.drives[static_cast<size_t>(i)];
-    const auto known = drive ? drive->joint_stiffness(joints[i]) : std::nullopt;
-    if (!known) return {};
-    stiffness[i] = *known;
-  }
-  return stiffness;
-}
 
 /// The stiffness of links alone and of links and drives, each only where it means something.
 struct Elastic {
@@ -54,7 +39,7 @@ Elastic elastic(const Situation& at) {
   Elastic result;
   const Stiffness links = stiffness(at.posture);
   if (!links.rigid) result.links = links;
-  result.drives.drive_stiffness = drive_stiffness(at);
+  result.drives.drive_stiffness = drive_stiffness(at.posture, at.model.drives);
   if (result.drives.drive_stiffness.size() > 0) {
     const Stiffness all = stiffness(at.posture, result.drives);
     if (!all.rigid) result.with_drives = all;

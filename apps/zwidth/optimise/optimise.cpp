@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <exception>
 #include <filesystem>
@@ -248,7 +247,6 @@ void refine_choice(StudyOutcome& outcome, const StudyModel& model) {
 }
 
 int optimise(OptimiseArguments arguments, const Terminal& terminal) {
-  const auto start = std::chrono::steady_clock::now();
   std::optional<Ranks> ranks;
   if (Ranks::started_by_launcher()) ranks.emplace();
   // Each rank reads the study; what is wrong with it is said once.
@@ -290,7 +288,6 @@ int optimise(OptimiseArguments arguments, const Terminal& terminal) {
     find_slopes(outcome, *model, arguments.threads);
     try_tolerances(outcome, *model, arguments.threads, arguments.samples);
   }
-  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (const std::string& note : outcome.result.notes) complain(note);
   const auto files = write_outcome(outcome, *model, directory.string());
   if (arguments.json) {

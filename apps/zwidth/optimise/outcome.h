@@ -31,7 +31,6 @@ struct StudyOutcome {
   std::optional<ChosenSlopes> slopes;
   std::optional<ToleranceStudy> tolerances;  ///< of objectives, then violations
   int workers = 1;                           ///< threads, or ranks, that evaluated
-  double seconds = 0.0;                      ///< of this run, by a wall clock
 
   /// Row of `SearchResult::designs` of a design of the front.
   std::span<const double> design(std::size_t front_row) const;

@@ -25,9 +25,12 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // Below, sending rows away takes longer than evaluating them.
 constexpr double kWorthSending = 100e-6;  // [s]
 constexpr double kWorthAMessage = 10e-6;  // [s]
+// Open MPI's shared memory passes up to 4 KiB on at once, its header included; networks take more. The sender
+// of a longer message waits until the other side asks for it, which is when that has done the rows it is at.
+constexpr std::size_t kAtOnce = (4096 - 256) / sizeof(double);  // values in a message
 
 // MPI's own waiting keeps a core busy, which another rank may need. This one yields at first, then sleeps for
-// an eighth of the time waited so far: what is late by that is little beside the wait.
+// a share of the time waited so far: what is late by that is little beside the wait.
 MPI_Status wait_for_message() {
   constexpr auto kSpin = std::chrono::microseconds(100);
   constexpr auto kLongest = std::chrono::milliseconds(2);
@@ -41,7 +44,7 @@ MPI_Status wait_for_message() {
     if (waited < kSpin) {
       sched_yield();
     } else {
-      std::this_thread::sleep_for(std::min<Clock::duration>(waited / 8, kLongest));
+      std::this_thread::sleep_for(std::min<Clock::duration>(waited / 32, kLongest));
     }
   }
 }
@@ -55,15 +58,52 @@ void receive(const MPI_Status& announced, std::vector<double>& message) {
            MPI_STATUS_IGNORE);
 }
 
-void send(std::span<const double> message, int to, int tag) {
-  MPI_Send(message.data(), static_cast<int>(message.size()), MPI_DOUBLE, to, tag, MPI_COMM_WORLD);
-}
+/// Messages on their way. MPI's own blocking send may wait until the other side has done the rows it is at.
+class Outbox {
+ public:
+  /// An empty message to fill.
+  std::vector<double>& next() {
+    for (at_ = 0; at_ < sent_.size(); ++at_) {
+      int gone = 0;
+      MPI_Test(&sent_[at_].request, &gone, MPI_STATUS_IGNORE);
+      if (gone != 0) break;
+    }
+    if (at_ == sent_.size()) sent_.emplace_back();
+    sent_[at_].values.clear();
+    return sent_[at_].values;
+  }
+
+  /// Sends the message that `next` gave last.
+  void send(int to, int tag) {
+    Message& one = sent_[at_];
+    MPI_Isend(one.values.data(), static_cast<int>(one.values.size()), MPI_DOUBLE, to, tag, MPI_COMM_WORLD,
+              &one.request);
+  }
+
+  /// Waits until all have gone.
+  void empty() {
+    for (Message& one : sent_) MPI_Wait(&one.request, MPI_STATUS_IGNORE);
+  }
+
+ private:
+  struct Message {
+    std::vector<double> values;
+    MPI_Request request = MPI_REQUEST_NULL;
+  };
+  std::vector<Message> sent_;
+  std::size_t at_ = 0;
+};
 
 /// One batch, as rank 0 deals it out.
 class Dealer {
  public:
   Dealer(std::size_t variables, std::size_t outcomes, BatchEvaluation own, int ranks)
-      : variables_(variables), outcomes_(outcomes), own_(std::move(own)), ranks_(ranks) {}
+      : variables_(variables),
+        outcomes_(outcomes),
+        most_(std::max<std::size_t>(
+            1, std::min((kAtOnce - kWorkHead) / variables, (kAtOnce - kOutcomeHead) / outcomes))),
+        own_(std::move(own)),
+        ranks_(ranks) {}
 
   bool evaluate(std::span<const double> designs, std::span<double> rows) {
     const std::size_t count = rows.size() / outcomes_;
@@ -100,16 +140,17 @@ class Dealer {
     const std::size_t left = count_ - next_;
     const std::size_t share = left / (4 * static_cast<std::size_t>(ranks_));
     const auto least = cost_ > 0.0 ? static_cast<std::size_t>(kWorthAMessage / cost_) : std::size_t{1};
-    return std::min(left, std::max({std::size_t{1}, share, std::min(least, left / 2)}));
+    return std::min({left, most_, std::max({std::size_t{1}, share, std::min(least, left / 2)})});
   }
 
   void deal(int rank) {
     if (next_ >= count_) return;
     const std::size_t piece = next_piece();
-    message_.assign(1, static_cast<double>(next_));
     const auto part = designs_.subspan(next_ * variables_, piece * variables_);
-    message_.insert(message_.end(), part.begin(), part.end());
-    send(message_, rank, kWork);
+    std::vector<double>& work = outbox_.next();
+    work.push_back(static_cast<double>(next_));
+    work.insert(work.end(), part.begin(), part.end());
+    outbox_.send(rank, kWork);
     next_ += piece;
     ++outstanding_;
   }
@@ -165,10 +206,12 @@ class Dealer {
   }
 
   std::size_t variables_, outcomes_;
+  std::size_t most_;  // rows in a piece
   BatchEvaluation own_;
   int ranks_;
   double cost_ = 0.0;  // of a row on this rank [s]; 0 before the first. Steers only who does what.
-  std::vector<double> message_;
+  Outbox outbox_;
+  std::vector<double> message_;  // the latest that came
   // The batch at hand.
   std::span<const double> designs_;
   std::span<double> rows_;
@@ -200,7 +243,7 @@ Ranks::Ranks() {
 
 Ranks::~Ranks() {
   if (drives()) {
-    for (int rank = 1; rank < size_; ++rank) send({}, rank, kHome);
+    for (int rank = 1; rank < size_; ++rank) MPI_Send(nullptr, 0, MPI_DOUBLE, rank, kHome, MPI_COMM_WORLD);
   } else if (!sent_home_) {
     std::vector<double> nothing;
     receive(wait_for_message(), nothing);
@@ -225,16 +268,19 @@ BatchEvaluation Ranks::spread(std::size_t variables, std::size_t outcomes, Batch
 
 void Ranks::serve(std::size_t variables, std::size_t outcomes, const BatchEvaluation& own) {
   assert(!drives() && variables > 0 && outcomes > 0);
-  std::vector<double> work, answer;
+  Outbox outbox;
+  std::vector<double> work;
   for (;;) {
     const MPI_Status status = wait_for_message();
     receive(status, work);
     if (status.MPI_TAG == kHome) {
       sent_home_ = true;
+      outbox.empty();
       return;
     }
     const std::span<const double> designs = std::span<const double>(work).subspan(kWorkHead);
     const std::size_t count = designs.size() / variables;
+    std::vector<double>& answer = outbox.next();
     answer.assign(kOutcomeHead + count * outcomes, kNaN);
     answer[0] = work[0];
     const std::span<double> rows = std::span<double>(answer).subspan(kOutcomeHead);
@@ -254,7 +300,7 @@ void Ranks::serve(std::size_t variables, std::size_t outcomes, const BatchEvalua
       }
     }
     answer[1] = whole ? 0.0 : 1.0;
-    send(answer, 0, kOutcome);
+    outbox.send(0, kOutcome);
   }
 }
 

@@ -55,8 +55,9 @@ void check_searches(const SearchProblem& spread, const SearchProblem& alone) {
 }
 
 void check_failures(const BatchEvaluation& spread, const BatchEvaluation& alone) {
-  // A batch of every size, rows in place.
-  for (std::size_t count = 0; count < 60; ++count) {
+  // A batch of every size, and one in many pieces, rows in place.
+  for (std::size_t count = 0; count <= 60; ++count) {
+    if (count == 60) count = 2000;
     std::vector<double> designs, rows(4 * count), expected(4 * count);
     for (std::size_t i = 0; i < count; ++i) designs.insert(designs.end(), {0.08 * static_cast<double>(i), 1.0});
     expect(spread(designs, rows) && alone(designs, expected), "a batch is whole");

@@ -38,6 +38,20 @@ std::string counted(int number, const char* singular, const char* plural) {
   return fmt::format("{} {}", number, number == 1 ? singular : plural);
 }
 
+constexpr int kSeldom = 10;  // a tenth of the postures tried is no longer hardly anywhere
+
+/// A device that only stands at home: its legs close at no other posture of the joint ranges that was tried.
+void refuse_home_alone(const std::string& device, const Mechanism& mechanism, const MobilitySample& sample) {
+  if (mechanism.legs().size() < 2 || sample.closed > 1) return;
+  throw DescriptionError(
+      {{.file = device,
+        .key = "mechanism",
+        .rule = fmt::format(
+            "closes its legs at home alone, if there: at none of {} other postures in the joint ranges",
+            sample.tried - 1),
+        .advice = "look for a length that is wrong, or narrow the joint ranges to what the device can do"}});
+}
+
 /// What the counts come to, in a word.
 const char* verdict_of(const Mobility& mobility) {
   if (mobility.loose > 0) return "under-constrained";
@@ -64,8 +78,22 @@ std::vector<std::string> warnings_of(const Model& model, const MobilitySample& s
   std::vector<std::string> warnings;
   const Mobility& mobility = sample.typical;
   if (sample.closed < sample.tried) {
-    warnings.push_back(fmt::format("the legs close at {} of {} postures tried in the joint ranges",
-                                   sample.closed, sample.tried));
+    warnings.push_back(fmt::format(
+        "the legs close at {} of {} postures tried in the joint ranges{}", sample.closed, sample.tried,
+        sample.closed * kSeldom > sample.tried
+            ? ""
+            : ": hardly anywhere; look for a length that is wrong, or narrow the ranges to "
+              "what the device uses"));
+  }
+  if (sample.closed > 0 && mobility.loose > 0) {
+    std::string joints;
+    for (const int j : loose_joints(sample.posture.front())) {
+      joints += fmt::format("{}{}", joints.empty() ? "" : ", ",
+                            model.mechanism.joint_names()[static_cast<size_t>(j)]);
+    }
+    warnings.push_back(fmt::format("under-constrained: {} that no drive holds{}",
+                                   counted(mobility.loose, "freedom", "freedoms"),
+                                   joints.empty() ? ", of the platform alone" : ", of " + joints));
   }
   if (sample.closed > 0 && mobility.redundant_equations > 0) {
     warnings.push_back(
@@ -157,6 +185,7 @@ int check(const CheckArguments& arguments, const Terminal& terminal) {
       const Model model(read_device(device, arguments.overrides));
       const Mechanism& mechanism = model.mechanism;
       const MobilitySample sample = sample_mobility(mechanism);
+      refuse_home_alone(device, mechanism, sample);
       const auto warnings = warnings_of(model, sample);
       const std::string family = family_name(model.description.mechanism);
       entry["ok"] = true;

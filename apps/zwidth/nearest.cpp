@@ -263,6 +263,12 @@ class Search {
       if (std::abs(x) < 1e-12 * mechanism_.characteristic_length()) x = 0.0;
     }
     result.distance = (result.position - goal_.target).stableNorm();
+    // Closer than the loops close there is no telling.
+    constexpr double kThere = 1e-9;
+    if (result.distance <= kThere * mechanism_.characteristic_length()) {
+      result.position = goal_.target;
+      result.distance = 0.0;
+    }
     return result;
   }
 

@@ -252,13 +252,17 @@ class Answer {
     std::vector<double> p =
         parsed("--position", text, std::vector<Dimension>(in_plane ? 2 : 3, Dimension::length));
     p.resize(3, 0.0);
-    if (mechanism_.tool_turns()) {
-      throw InputError(
-          fmt::format("--position \"{}\": the tool of {} turns, so a position leaves its posture open; "
-                      "give --joints or --posture",
-                      text, model_.description.name));
+    // As `at --position`: an arm turns its tool as it likes, in the posture nearest to home.
+    SolveOptions options;
+    if (mechanism_.serial() != nullptr) options.match = Match::position;
+    const Pose goal{Vector3(p[0], p[1], p[2]), Matrix3::Identity()};
+    Solution solution = solve_inverse(mechanism_, goal, options);
+    constexpr double kThere = 1e-6;  // one held in a plane leaves the rest out
+    if (solution && (solution.posture->tool().position - goal.position).norm() >
+                        kThere * mechanism_.characteristic_length()) {
+      solution.status = SolveStatus::unreachable;
+      solution.posture.reset();
     }
-    const Solution solution = solve_inverse(mechanism_, Pose{Vector3(p[0], p[1], p[2]), Matrix3::Identity()});
     if (!solution || solution.status == SolveStatus::joint_limit) {
       complain(fmt::format("{} cannot be reached: {}; see `zwidth at {} --position {}`", text,
                            to_string(solution.status), arguments_.device, text));

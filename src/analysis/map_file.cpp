@@ -1,6 +1,6 @@
 #include <bit>
+#include <charconv>
 #include <cstdint>
-#include <cstdio>
 #include <ostream>
 
 #include "zwidth/analysis/workspace.h"
@@ -8,11 +8,10 @@
 namespace zwidth {
 namespace {
 
-// The shortest decimal number that reads back as the same double would be nicer; 17 digits always do.
+// The shortest decimal number that reads back as the same double.
 void write_number(double value, std::ostream& out) {
   char text[32];
-  const int length = std::snprintf(text, sizeof text, "%.17g", value);
-  out.write(text, length);
+  out.write(text, std::to_chars(text, text + sizeof text, value).ptr - text);
 }
 
 void write_double(double value, std::ostream& out) {

@@ -78,6 +78,16 @@ class Elimination {
   /// Row of the pseudo-inverse, `rows` long: unknown `column` per right side.
   const std::array<double, 8>& inverse(int column) const noexcept { return inverse_[column]; }
 
+  /// Column i of an orthonormal basis U of A's range, for i < rank.
+  const std::array<double, 8>& range(int i) const noexcept { return q_[i]; }
+
+  /// After the last step: 1 or -1 as det[A N], A by its independent columns.
+  double orientation() const noexcept {
+    double sign = 1.0;  // each reflection counts -1, and -1 over it the sign of its reciprocal
+    for (int k = 0; k < rank_; ++k) sign = reciprocal_[k] > 0.0 ? -sign : sign;
+    return sign;
+  }
+
   /// Column i of N, for i < rows - rank.
   const std::array<double, 8>& left_over(int i) const noexcept { return q_[rank_ + i]; }
 

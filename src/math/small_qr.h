@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 #include "zwidth/math/lanes.h"
 
@@ -55,6 +56,18 @@ class SmallQr {
   double smallest_pivot() const noexcept {
     const int full = rows_ < columns_ ? rows_ : columns_;
     return rank_ < full || full == 0 ? 0.0 : std::abs(diagonal_[full - 1]);
+  }
+
+  /// 1 or -1 as det(A); 0 if A is not square or its rank not full.
+  double determinant_sign() const noexcept {
+    if (rows_ != columns_ || rank_ < columns_) return 0.0;
+    double sign = 1.0;
+    std::array<int, MaxColumns> place = pivot_;
+    for (int k = 0; k < columns_; ++k) {
+      if (diagonal_[k] > 0.0) sign = -sign;  // a reflection counts -1
+      for (; place[k] != k; sign = -sign) std::swap(place[k], place[place[k]]);
+    }
+    return sign;
   }
 
   /// b <- Q^T b; b has `rows` elements, numbers or `Lanes` of numbers.

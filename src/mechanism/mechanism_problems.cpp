@@ -105,6 +105,14 @@ std::vector<Problem> freedom_problems(const Mechanism& mechanism, const Mobility
     return problems;
   }
   const std::vector<int> loose = loose_joints(posture);
+  if (mobility.loose > 0 && loose.empty()) {
+    problems.push_back(
+        {.key = "mechanism.platform",
+         .rule = fmt::format("under-constrained: with every active joint held, the platform can still "
+                             "move where no joint follows, about points that hold it; {}",
+                             counts),
+         .advice = "hold the platform with another leg, or attach one with attachment = \"rigid\""});
+  }
   if (mobility.loose > 0 && !loose.empty()) {
     const bool idle = mobility.loose_tool == 0;
     problems.push_back(

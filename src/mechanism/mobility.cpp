@@ -74,6 +74,20 @@ class Span {
 
   int size() const { return static_cast<int>(basis_.size()); }
 
+  // In how many directions it moves a point, near `point`: neighbours go where the point itself, on an axis,
+  // may not.
+  int directions(const Vector3& point) const {
+    Span linear;
+    for (const Vector3& aside : {Vector3(0.0, 0.0, 0.0), Vector3(0.3, 0.1, 0.2), Vector3(-0.1, 0.3, 0.2)}) {
+      for (const Vector6& one : basis_) {
+        Vector6 way = Vector6::Zero();
+        way.head<3>() = one.head<3>() + one.tail<3>().cross(point + aside);
+        linear.add(way);
+      }
+    }
+    return linear.size();
+  }
+
   MotionGroup group() const {
     Eigen::MatrixXd turns = Eigen::MatrixXd::Zero(3, std::max(1, size()));
     for (int i = 0; i < size(); ++i) turns.col(i) = basis_[static_cast<std::size_t>(i)].tail<3>();
@@ -152,6 +166,14 @@ int gruebler(const Posture& posture, const Eigen::MatrixXd& equations, const Unk
   const int joints = mechanism.joint_count(), legs = static_cast<int>(mechanism.legs().size());
   // Whatever the platform does is in the group of the joints, and so is every equation.
   if (held_rigidly(mechanism)) return joints - group.size() * (legs - 1);
+  // So it is with a platform that only translates, hung on points: each leg says where it is, in the directions
+  // that the group moves points in.
+  const bool points = std::all_of(mechanism.legs().begin(), mechanism.legs().end(),
+                                  [](const LegModel& leg) { return leg.attachment == Attachment::spherical; });
+  if (points && !mechanism.tool_turns() && unknowns.platform.size() == 3) {
+    const auto directions = group.directions(posture.tool().position / mechanism.characteristic_length());
+    return joints - directions * (legs - 1);
+  }
   int count = joints + static_cast<int>(unknowns.platform.size());
   for (int l = 0; l < legs; ++l) count -= telling_equations(posture, l, equations, unknowns.platform);
   return count;

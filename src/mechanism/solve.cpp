@@ -12,7 +12,9 @@
 #include "zwidth/mechanism/posture.h"
 
 // The general solver is Newton on the loop closure, led from a start by small steps of what is asked for, so
-// that it stays on the branch (assembly mode, working mode) of the start.
+// that it stays on the branch (assembly mode, working mode) of the start. Two things tell of a step that left
+// it: Newton's second correction, which is small against the first one wherever the answer nearby is the only
+// one, and the sign of the closure's determinant, which the branches that meet in a singularity do not share.
 
 namespace zwidth {
 
@@ -26,14 +28,21 @@ using internal::PostureBuilder;
 namespace {
 
 constexpr double kLongestStep = 0.4;    // of what leads the way: active joints [rad, characteristic lengths]
-constexpr double kShortestStep = 1e-3;  // share of the way; a shorter step that fails ends the search
+constexpr double kShortestStep = 1e-4;  // share of the way; a shorter step that fails ends the search
 constexpr double kLargestCorrection = 1.5;  // of a joint within one step; more is a jump to another branch
 constexpr double kLoose = 1e-5;             // closure on the way, relative to the characteristic length
+// Of Newton's second correction over the first. Next to a fold, x^2 = t, it is at most 1/2, which only a step
+// right onto the fold takes; Deuflhard 2011, chapter 5, asks for as much of a continuation.
+constexpr double kContraction = 0.55;
+constexpr double kRegular = 1e-2;   // condition of a closure that the shortest step does not bring to zero
+constexpr double kRounding = 1e-7;  // a correction [rad, characteristic lengths] below this leads nowhere else
 
 struct Newton {
   bool converged = false;
   double residual = -1.0;
   int iterations = 0;
+  double contraction = 0.0;  // of the second correction against the first
+  double moved = 0.0;        // by the corrections since the closure was factored [rad, characteristic lengths]
 };
 
 struct Budget {
@@ -104,6 +113,7 @@ ZWIDTH_WIDE Newton close_loops(Posture& posture, double tolerance, int limit, Bu
   ClosureVector error;
   std::array<double, 6> twist;
   JointVector change = JointVector::Zero(mechanism.joint_count());
+  double first = 0.0;
   while (true) {
     PostureBuilder::place_legs(posture);
     newton.residual = 0.0;
@@ -119,13 +129,19 @@ ZWIDTH_WIDE Newton close_loops(Posture& posture, double tolerance, int limit, Bu
     --budget.left;
     ++budget.used;
 
-    if (!reuse.allowed(newton.residual, tolerance)) closure.factor(posture);
+    if (!reuse.allowed(newton.residual, tolerance)) {
+      closure.factor(posture);
+      newton.moved = 0.0;
+    }
     closure.solve(error, twist, [&change](int j, double correction) { change[j] = correction; });
     double largest = 0.0;
     for (int j = 0; j < mechanism.joint_count(); ++j) {
       largest = std::max(largest, scaled(mechanism.joints()[j], change[j], length));
     }
     const double share = damping(largest);
+    newton.moved += share * largest;
+    if (newton.iterations == 1) first = largest;
+    if (newton.iterations == 2 && first > kRounding) newton.contraction = largest / first;
     joints += share * change;
     Vector3 turn = Vector3::Zero();
     const std::span<const int> axes = mechanism.tool_axes();
@@ -149,6 +165,27 @@ bool jumped(const Posture& posture, const JointVector& before) {
   return false;
 }
 
+// Whether a step from `before` led past a direct singularity. `closure` is that of the last step of Newton, and
+// is brought to the answer where it may differ.
+bool crossed(const Posture& posture, const JointVector& before, const Pose& tool_before, const Newton& newton,
+             Closure& closure) {
+  constexpr double kSure = 0.1;  // of the closure's condition: less way cannot bring it to zero
+  const Mechanism& mechanism = posture.mechanism();
+  if (newton.iterations == 0 || newton.moved > kSure * closure.direct_condition()) closure.factor(posture);
+  double way = 0.0;
+  for (int j = 0; j < mechanism.joint_count(); ++j) {
+    way = std::max(
+        way, scaled(mechanism.joints()[j], posture.joints()[j] - before[j], mechanism.characteristic_length()));
+  }
+  if (way <= kSure * closure.direct_condition() || closure.direct_condition() <= Closure::kSingular)
+    return false;
+  Posture earlier = PostureBuilder::unplaced(posture);
+  PostureBuilder::joints(earlier) = before;
+  PostureBuilder::tool(earlier) = tool_before;
+  PostureBuilder::place_legs(earlier);
+  return closure.sign_against(Closure(earlier)) < 0;
+}
+
 // A posture at the home guess, loops not yet closed: the platform where the legs' tips say on average.
 Posture at_home_guess(const Mechanism& mechanism) {
   Posture posture = PostureBuilder::open(mechanism);
@@ -168,7 +205,8 @@ Posture at_home_guess(const Mechanism& mechanism) {
   return posture;
 }
 
-// Leads `posture`, closed at its active joints, to other ones. On failure it is left where it failed.
+// Leads `posture`, closed at its active joints, to other ones without passing a singularity. On failure it is
+// left where it failed.
 Newton lead_active(Posture& posture, const ActiveVector& target, double tolerance, Budget& budget,
                    Closure& closure) {
   const Mechanism& mechanism = posture.mechanism();
@@ -179,8 +217,8 @@ Newton lead_active(Posture& posture, const ActiveVector& target, double toleranc
   for (int i = 0; i < mechanism.active_count(); ++i) {
     way = std::max(way, scaled(mechanism.joints()[mechanism.active_joint(i)], target[i] - from[i], length));
   }
-  double step = 1.0 / std::max(1.0, std::ceil(way / kLongestStep));
-  double done = 0.0;
+  const double longest = 1.0 / std::max(1.0, std::ceil(way / kLongestStep));
+  double step = longest, done = 0.0;
   Newton newton;
   while (done < 1.0) {
     const double next = done + step > 1.0 - 1e-9 ? 1.0 : done + step;
@@ -191,9 +229,14 @@ Newton lead_active(Posture& posture, const ActiveVector& target, double toleranc
       joints[mechanism.active_joint(i)] = last ? target[i] : from[i] + next * (target[i] - from[i]);
     }
     newton = close_loops(posture, last ? tolerance * length : kLoose * length, last ? 40 : 12, budget, closure);
-    if (newton.converged && !jumped(posture, before)) {
-      done = next;
-      continue;
+    if (newton.converged && newton.contraction <= kContraction && !jumped(posture, before)) {
+      // What only passive joints of a leg are singular in, as a universal joint may be, the platform passes.
+      const bool platform_passes = 0.5 * step < kShortestStep && closure.reciprocal_condition() > kRegular;
+      if (!crossed(posture, before, tool_before, newton, closure) || platform_passes) {
+        done = next;
+        step = std::min(longest, 2.0 * step);
+        continue;
+      }
     }
     newton.converged = false;
     step *= 0.5;
@@ -265,6 +308,18 @@ void judge(Solution& solution, const Closure& closure) {
   }
 }
 
+// Whether the loops close at joint values that could not be led to: beyond a singularity, that is. `posture` is
+// where leading failed.
+bool closes_elsewhere(Posture& posture, const ActiveVector& active, double tolerance) {
+  const Mechanism& mechanism = posture.mechanism();
+  for (int i = 0; i < mechanism.active_count(); ++i)
+    PostureBuilder::joints(posture)[mechanism.active_joint(i)] = active[i];
+  constexpr int kSteps = 60;
+  Budget budget{kSteps};
+  Closure closure;
+  return close_loops(posture, tolerance * mechanism.characteristic_length(), kSteps, budget, closure).converged;
+}
+
 Solution forward_general(const Mechanism& mechanism, const ActiveVector& active, const SolveOptions& options) {
   const double length = mechanism.characteristic_length();
   Budget budget{options.max_iterations};
@@ -279,6 +334,11 @@ Solution forward_general(const Mechanism& mechanism, const ActiveVector& active,
     solution.posture = at_home_guess(mechanism);
     budget.left = std::max(budget.left, options.max_iterations / 2);
     newton = close_loops(*solution.posture, kLoose * length, 40, budget, closure);
+    if (newton.converged) {
+      closure.factor(*solution.posture);
+      // A start on another branch has none of home's answers.
+      newton.converged = options.start == nullptr || Closure(*options.start).sign() * closure.sign() >= 0;
+    }
     if (newton.converged) {
       const Posture home = *solution.posture;
       newton = lead_active(*solution.posture, active, options.tolerance, budget, closure);
@@ -297,6 +357,8 @@ Solution forward_general(const Mechanism& mechanism, const ActiveVector& active,
   solution.iterations = budget.used;
   solution.residual = newton.residual;
   if (!newton.converged) {
+    if (options.restart)
+      solution.other_assembly = closes_elsewhere(*solution.posture, active, options.tolerance);
     solution.posture.reset();
     return solution;
   }

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "zwidth/math/elimination.h"
 #include "zwidth/mechanism/internal/posture_builder.h"
@@ -169,6 +170,27 @@ Matrix6 LegStiffness::matrix() const noexcept {
   return K;
 }
 
+namespace {
+
+constexpr double kFree = 1e-13;  // the square of what rounding leaves of a wrench that is not there
+
+// Makes zero what is rounding beside the largest of its kind: forces, moments, or their mean where it is both.
+void drop_rounding(Matrix6& K) noexcept {
+  const double kinds[] = {K.diagonal().head<3>().maxCoeff(), K.diagonal().tail<3>().maxCoeff()};
+  for (int r = 0; r < 6; ++r) {
+    if (K(r, r) > kFree * kinds[r / 3]) continue;
+    K.row(r).setZero();
+    K.col(r).setZero();
+  }
+  for (int r = 0; r < 6; ++r) {
+    for (int c = 0; c < 6; ++c) {
+      if (K(r, c) * K(r, c) <= kFree * kFree * kinds[r / 3] * kinds[c / 3]) K(r, c) = 0.0;
+    }
+  }
+}
+
+}  // namespace
+
 ZWIDTH_WIDE Stiffness stiffness(const Posture& posture, const StiffnessOptions& options) noexcept {
   const Mechanism& mechanism = posture.mechanism();
   const double length = mechanism.characteristic_length();
@@ -220,6 +242,7 @@ ZWIDTH_WIDE Stiffness stiffness(const Posture& posture, const StiffnessOptions& 
     result.matrix.bottomRows<3>().setZero();
     result.matrix.rightCols<3>().setZero();
   }
+  drop_rounding(result.matrix);
   return result;
 }
 
@@ -246,7 +269,6 @@ void invert(const Matrix6& K, double length, Compliance& result) {
     }
   }
   const Eigen::SelfAdjointEigenSolver<Square> eigen(scaled);
-  constexpr double kFree = 1e-13;  // the square of what rounding leaves of a wrench that is not there
   const double largest = eigen.eigenvalues()[N - 1];
   Square inverse;
   if (eigen.eigenvalues()[0] > kFree * largest) {
@@ -328,17 +350,22 @@ std::optional<ComplianceShares> compliance_shares(const Posture& posture, const 
 }
 
 StiffnessIndices stiffness_indices(const Matrix6& stiffness) noexcept {
-  const auto condition = [](const Matrix3& block) {
+  struct Block {
+    double condition, determinant;
+  };
+  const auto of = [](const Matrix3& block) -> Block {
     const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(block, Eigen::EigenvaluesOnly);
     const Vector3 sizes = eigen.eigenvalues().cwiseAbs();
-    return sizes.maxCoeff() / sizes.minCoeff();
+    if (!(sizes.minCoeff() > kFree * sizes.maxCoeff())) return {std::numeric_limits<double>::infinity(), 0.0};
+    return {sizes.maxCoeff() / sizes.minCoeff(), block.determinant()};
   };
-  const Matrix3 translation = stiffness.topLeftCorner<3, 3>(), rotation = stiffness.bottomRightCorner<3, 3>();
+  const Block translation = of(stiffness.topLeftCorner<3, 3>()),
+              rotation = of(stiffness.bottomRightCorner<3, 3>());
   return {.frobenius = stiffness.norm(),
-          .condition_translation = condition(translation),
-          .condition_rotation = condition(rotation),
-          .determinant_translation = translation.determinant(),
-          .determinant_rotation = rotation.determinant()};
+          .condition_translation = translation.condition,
+          .condition_rotation = rotation.condition,
+          .determinant_translation = translation.determinant,
+          .determinant_rotation = rotation.determinant};
 }
 
 }  // namespace zwidth

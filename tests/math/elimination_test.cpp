@@ -41,6 +41,26 @@ Eigen::MatrixXd left_over(const Elimination& elimination) {
   return n;
 }
 
+TEST(Elimination, KnowsHowItsColumnsAreOriented) {
+  std::mt19937_64 random(52);
+  for (int k = 0; k < 500; ++k) {
+    const int rows = random() % 2 == 0 ? 3 : 6, columns = 1 + static_cast<int>(random() % 3);
+    const Eigen::MatrixXd a = random_matrix(random, rows, columns);
+    Elimination elimination;
+    fill(elimination, a);
+    run(elimination);
+    Eigen::MatrixXd basis(rows, rows);
+    for (int i = 0; i < columns; ++i)
+      basis.col(i) = Eigen::Map<const Eigen::VectorXd>(elimination.range(i).data(), rows);
+    basis.rightCols(rows - columns) = left_over(elimination);
+    EXPECT_LT((basis.leftCols(columns) * basis.leftCols(columns).transpose() * a - a).norm(), 1e-14);
+    // So that the determinant of [A N] has this sign whatever the basis of the rest is turned like.
+    Eigen::MatrixXd whole(rows, rows);
+    whole << a, left_over(elimination);
+    EXPECT_GT(elimination.orientation() * whole.determinant(), 0.0);
+  }
+}
+
 TEST(Elimination, OfAnyRankHasAnInverseForWhatActsAndABasisOfTheRest) {
   std::mt19937_64 random(51);
   for (int k = 0; k < 2000; ++k) {

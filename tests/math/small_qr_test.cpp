@@ -71,6 +71,19 @@ TEST(SmallQr, FindsTheRankAndStillMeetsConsistentEquations) {
   }
 }
 
+TEST(SmallQr, KnowsTheSignOfTheDeterminant) {
+  std::mt19937_64 random(46);
+  for (int k = 0; k < 500; ++k) {
+    const int size = 1 + static_cast<int>(random() % 4);
+    const Eigen::MatrixXd a = random_matrix(random, size, size);
+    SmallQr<6, 4> qr;
+    fill(qr, a);
+    EXPECT_GT(qr.determinant_sign() * a.determinant(), 0.0) << a;
+    fill(qr, random_matrix(random, size + 1, size));
+    EXPECT_EQ(qr.determinant_sign(), 0.0);
+  }
+}
+
 TEST(SmallQr, OfNoColumnsHasConditionOne) {
   SmallQr<6, 4> qr;
   fill(qr, Eigen::MatrixXd(6, 0));

@@ -67,6 +67,26 @@ std::string limits_broken(const Mechanism& mechanism, const Posture& posture) {
   return text;
 }
 
+/// "1.5deg" or "20mm", as an option takes it.
+std::string option_value(const Mechanism& mechanism, int active, double value) {
+  const bool slide = slides(mechanism, mechanism.active_joint(active));
+  return trimmed(value * (slide ? kMilli : kDegrees), 7) + (slide ? "mm" : "deg");
+}
+
+/// Where a posture beyond the ranges is not the only one of a mechanism of several legs: one within them, if
+/// its joints lead to it; empty if there is none.
+std::string within_limits(const Found& found, const Mechanism& mechanism) {
+  if (mechanism.serial() != nullptr) return "";
+  for (const Solution& one : found.solutions) {
+    if (!one || one.other_assembly || one.status == SolveStatus::joint_limit) continue;
+    std::string joints;
+    for (int i = 0; i < mechanism.active_count(); ++i)
+      joints += fmt::format("{}{}", i == 0 ? "" : ",", option_value(mechanism, i, one.posture->active()[i]));
+    return "; this is home's working mode, in another every joint is in its range: --joints " + joints;
+  }
+  return "";
+}
+
 /// Why an arm has no posture with the joint kept that the goal allows otherwise; empty if that is not why.
 std::string kept_in_vain(const Goal& goal, const Mechanism& mechanism) {
   const Redundancy& rule = goal.options.redundancy;
@@ -106,7 +126,10 @@ std::string unsolved(Found& found, const Mechanism& mechanism, bool by_position)
   } else if (by_position && mechanism.delta()) {
     reason = delta_reach(*mechanism.delta(), found.goal.tool.position);
   } else if (!by_position) {
-    reason = "the legs cannot close at these joint values";
+    reason = found.solution.other_assembly ? "the legs close at these joint values only in another assembly "
+                                             "mode, beyond a singularity that the "
+                                             "device would have to pass"
+                                           : "the legs cannot close at these joint values";
   }
   if (!reason.empty()) return reason;
   const char* what = found.goal.by_orientation ? "pose" : "point";
@@ -144,6 +167,7 @@ void find_posture(const Model& model, const Arguments& arguments, const Frame& f
     found.reason = unsolved(found, mechanism, by_position);
   } else if (found.solution.status == SolveStatus::joint_limit) {
     found.reason = limits_broken(mechanism, *found.solution.posture);
+    if (by_position) found.reason += within_limits(found, mechanism);
   }
 }
 
@@ -241,9 +265,7 @@ void write_nearest(Found& found, const Model& model, const Arguments& arguments,
   std::string joints;
   for (int i = 0; i < mechanism.active_count(); ++i) {
     if (free_at_home && mechanism.is_free(i)) continue;
-    const bool slide = slides(mechanism, mechanism.active_joint(i));
-    joints += fmt::format("{}{}{}", joints.empty() ? "" : ",",
-                          trimmed(point->joints[i] * (slide ? kMilli : kDegrees), 7), slide ? "mm" : "deg");
+    joints += fmt::format("{}{}", joints.empty() ? "" : ",", option_value(mechanism, i, point->joints[i]));
   }
   answer.page().row("try", fmt::format("zwidth at {} --joints {}", arguments.device, joints));
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace zwidth::internal {
 
@@ -48,6 +49,72 @@ ZWIDTH_WIDE void Closure::factor(const Posture& posture) noexcept {
     }
   }
   platform_.factor();
+}
+
+int Closure::sign() const noexcept {
+  if (direct_condition() <= kSingular) return 0;
+  double sign = platform_.determinant_sign();
+  for (int l = 0; l < leg_count_; ++l) sign *= legs_[l].passive.orientation();
+  return static_cast<int>(sign);
+}
+
+namespace {
+
+// The sign of the determinant of the first n rows and columns, by elimination with partial pivoting.
+template <std::size_t Size>
+double determinant_sign(std::array<std::array<double, Size>, Size>& a, int n) {
+  double sign = 1.0;
+  for (int k = 0; k < n; ++k) {
+    int best = k;
+    for (int i = k + 1; i < n; ++i) best = std::abs(a[i][k]) > std::abs(a[best][k]) ? i : best;
+    if (a[best][k] == 0.0) return 0.0;
+    if (best != k) {
+      std::swap(a[k], a[best]);
+      sign = -sign;
+    }
+    if (a[k][k] < 0.0) sign = -sign;
+    for (int i = k + 1; i < n; ++i) {
+      const double factor = a[i][k] / a[k][k];
+      for (int j = k + 1; j < n; ++j) a[i][j] -= factor * a[k][j];
+    }
+  }
+  return sign;
+}
+
+}  // namespace
+
+int Closure::sign_against(const Closure& other) const noexcept {
+  if (sign() != 0 && other.sign() != 0) return sign() * other.sign();
+  // With U R the passive columns of a leg and C = N N^T B what they leave of the platform's, det(M^T M') is
+  // next to det(sum C^T C') times each leg's det(R) det(U^T U') det(R').
+  double product = 1.0;
+  std::array<std::array<double, 6>, 6> platform{};
+  for (int l = 0; l < leg_count_; ++l) {
+    const Leg &a = legs_[l], &b = other.legs_[l];
+    const int rank = a.passive.rank();
+    if (rank != b.passive.rank()) return 0;
+    std::array<std::array<double, 6>, 6> range;
+    for (int i = 0; i < rank; ++i) {
+      for (int j = 0; j < rank; ++j) a.passive.product(a.passive.range(i), b.passive.range(j), range[i][j]);
+    }
+    product *= determinant_sign(range, rank) * a.passive.orientation() * b.passive.orientation();
+    for (int i = 0; i < a.left_over(); ++i) {
+      for (int j = 0; j < b.left_over(); ++j) {
+        double across;
+        a.passive.product(a.passive.left_over(i), b.passive.left_over(j), across);
+        for (int c = 0; c < tool_rows_; ++c) {
+          double left;
+          a.passive.product(a.passive.left_over(i), a.platform[c], left);
+          for (int d = 0; d < tool_rows_; ++d) {
+            double right;
+            b.passive.product(b.passive.left_over(j), b.platform[d], right);
+            platform[c][d] += left * across * right;
+          }
+        }
+      }
+    }
+  }
+  return static_cast<int>(product * determinant_sign(platform, tool_rows_));
 }
 
 ZWIDTH_WIDE double Closure::drive_condition(const Posture& posture) const noexcept {

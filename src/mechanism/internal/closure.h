@@ -70,6 +70,19 @@ class Closure {
     return least;
   }
 
+  /// 1 or -1 as the determinant of the equations in passive rates and platform twist, which changes its sign
+  /// where the mechanism passes a direct singularity; 0 at one, as far as Newton can tell, and where equations
+  /// outnumber the unknowns.
+  int sign() const noexcept;
+  /// The smaller of the two conditions, of which that determinant is zero where either is.
+  double direct_condition() const noexcept { return std::min(reciprocal_condition(), passive_condition()); }
+  static constexpr double kSingular = 1e-5;  ///< a direct condition that Newton cannot tell from zero: it meets
+                                             ///< x^2 = 0 to 1e-12 with x = 1e-6
+
+  /// 1 or -1 as the product of that determinant with `other`'s, of a posture close by; where equations
+  /// outnumber the unknowns, as det(M^T M') of the two matrices. 0 if they do not compare.
+  int sign_against(const Closure& other) const noexcept;
+
   /// Smallest singular value of H in K x = H qdot, with qdot the active rates, over the longest lever of an
   /// active joint: 0 where some of them do not move the platform, however equal the others are. REQUIRES: the
   /// posture that was factored, or one next to it.

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
@@ -44,36 +45,55 @@ int devices(bool json, const Terminal& terminal) {
 }
 
 /// What studies may ask for.
-int figures(bool json, const Terminal& terminal) {
+int figures(const std::string& word, bool json, const Terminal& terminal) {
   Json list = Json::array();
   Sheet sheet(terminal);
   sheet.title("Figures", "for [[measure]] in a study");
-  for (const bool of_posture : {true, false}) {
-    sheet.heading(of_posture ? "Of a posture" : "Of the device as a whole");
-    for (const FigureDefinition& figure : figure_definitions()) {
-      if (figure.of_posture != of_posture) continue;
-      Json entry;
-      entry["name"] = figure.name;
-      entry["unit"] = figure.unit;
-      entry["meaning"] = figure.meaning;
-      entry["of"] = of_posture ? "posture" : "device";
-      entry["needs_load"] = figure.needs_load;
-      Json options = Json::array();
-      std::string note(figure.meaning);
-      if (figure.needs_load) note += "; takes force, moment";
-      for (const FigureOption& option : figure.options) {
-        Json one;
-        one["name"] = option.name;
-        one["default"] = option.otherwise;
-        one["meaning"] = option.meaning;
-        options.push_back(one);
+  std::string heading;
+  bool any = false;
+  for (const FigureDefinition& figure : figure_definitions()) {
+    const std::string group =
+        figure.topic + (figure.of_posture ? ", of a posture" : ", of the device as a whole");
+    std::string searched = figure.name + " " + figure.meaning + " " + group;
+    for (char& c : searched) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (searched.find(word) == searched.npos) continue;
+    any = true;
+    if (group != heading) sheet.heading(group);
+    heading = group;
+    Json entry;
+    entry["name"] = figure.name;
+    entry["unit"] = figure.unit;
+    entry["meaning"] = figure.meaning;
+    entry["topic"] = figure.topic;
+    entry["of"] = figure.of_posture ? "posture" : "device";
+    entry["needs_load"] = figure.load == FigureLoad::needed;
+    entry["takes_load"] = figure.load != FigureLoad::none;
+    Json options = Json::array();
+    std::string note = figure.meaning;
+    if (figure.load != FigureLoad::none) note += "; takes force, moment";
+    for (const FigureOption& option : figure.options) {
+      options.push_back({{"name", option.name}, {"default", option.otherwise}, {"meaning", option.meaning}});
+      if (word.empty())
         note += fmt::format("{}{}", &option == figure.options.data() ? "; options " : ", ", option.name);
-      }
-      entry["options"] = options;
-      list.push_back(entry);
-      sheet.line(fmt::format("  {:<28}{}", figure.name, figure.unit == "1" ? "" : figure.unit));
-      sheet.paragraph(note, 6, Tint::dim);
     }
+    entry["options"] = options;
+    Json answers = Json::array();
+    for (const FigureAnswer& answer : figure.answers) answers.push_back(answer.place);
+    entry["same_as"] = answers;
+    list.push_back(entry);
+    const bool unitless = figure.unit == "1" || figure.unit == "SI";
+    sheet.line(fmt::format("  {:<34}{}", figure.name, unitless ? "" : figure.unit));
+    sheet.paragraph(note, 6, Tint::dim);
+    for (const FigureOption& option : figure.options) {
+      if (word.empty()) break;
+      sheet.paragraph(fmt::format("{} = {}: {}", option.name, trimmed(option.otherwise), option.meaning), 10,
+                      Tint::dim);
+    }
+  }
+  if (!any) {
+    std::vector<std::string> known;
+    for (const FigureDefinition& figure : figure_definitions()) known.push_back(figure.name);
+    throw InputError(fmt::format("figures {}: no figure is about that; {}", word, suggest(word, known)));
   }
   if (json) {
     Json document;
@@ -82,7 +102,9 @@ int figures(bool json, const Terminal& terminal) {
     return kDone;
   }
   sheet.gap();
-  sheet.paragraph("reached_share is the share of a box, or of the joint ranges, that the tool reaches.");
+  sheet.paragraph("reached_share is the share of many postures, or of a box, that the tool reaches.");
+  if (word.empty())
+    sheet.paragraph("`zwidth figures stiffness` lists those about one thing, with their options.");
   print(sheet.text());
   return kDone;
 }
@@ -319,12 +341,18 @@ void add_devices(CLI::App& app, Context& context) {
 }
 
 void add_figures(CLI::App& app, Context& context) {
-  CLI::App* verb = add_verb(app, "figures", "The figures that a study may ask for",
-                            "  zwidth figures\n  zwidth figures --json | jq -r '.figures[].name'");
+  CLI::App* verb =
+      add_verb(app, "figures", "The figures that a study may ask for",
+               "  zwidth figures\n"
+               "  zwidth figures stiffness                 those about one thing, with their options\n"
+               "  zwidth figures --json | jq -r '.figures[].name'");
   auto json = std::make_shared<bool>(false);
+  auto word = std::make_shared<std::string>();
+  verb->add_option("WORD", *word, "only those that have it in their name, meaning or heading");
   add_json_flag(*verb, *json);
-  verb->callback(
-      [json, &context] { context.run = [json, &context] { return figures(*json, context.terminal); }; });
+  verb->callback([json, word, &context] {
+    context.run = [json, word, &context] { return figures(*word, *json, context.terminal); };
+  });
 }
 
 void add_parts(CLI::App& app, Context& context) {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kLargestBudget = 1e7;   // generations, population
 constexpr int kMostLatticePoints = 200;  // along an axis
+constexpr int kMostSamples = 1000000;
 
 // "mechanism.inner_link" is called inner_link, "mechanism.joint_range[1]" joint_range.
 std::string name_of_key(const std::string& key) {
@@ -194,8 +195,11 @@ class StudyReader {
     measure.figure =
         table.text("figure", Need::required, "name a figure; `zwidth figures` lists them").value_or("");
     int places = 0;
-    if (const auto at = table.text("at", Need::optional, "write \"home\" or the name of a [[posture]]")) {
-      measure.place = *at == "home" ? StudyPlace::home : StudyPlace::posture;
+    if (const auto at =
+            table.text("at", Need::optional, "write \"home\", \"middle\" or the name of a [[posture]]")) {
+      measure.place = *at == "home"     ? StudyPlace::home
+                      : *at == "middle" ? StudyPlace::middle
+                                        : StudyPlace::posture;
       measure.posture = *at;
       ++places;
     }
@@ -204,8 +208,12 @@ class StudyReader {
       measure.joints = table.expressions("joints", "give a value for each active joint");
       ++places;
     }
-    const auto over = table.choice<StudyPlace>(
-        "over", {{"joint_ranges", StudyPlace::joint_ranges}, {"box", StudyPlace::box}}, Need::optional);
+    const auto over = table.choice<StudyPlace>("over",
+                                               {{"box", StudyPlace::box},
+                                                {"workspace", StudyPlace::workspace},
+                                                {"postures", StudyPlace::postures},
+                                                {"joint_ranges", StudyPlace::joint_ranges}},
+                                               Need::optional);
     if (over) {
       measure.place = *over;
       ++places;
@@ -217,7 +225,7 @@ class StudyReader {
         measure.place = StudyPlace::position;
         ++places;
       } else if (*over != StudyPlace::box) {
-        table.report("position", "means nothing over the joint ranges", "leave it out");
+        table.report("position", "means nothing there", "leave it out, or write over = \"box\"");
       }
     }
     if (places > 1) {
@@ -228,6 +236,23 @@ class StudyReader {
       table.report("over", "needs the box", "give its centre as position, and its edges as size");
     }
     if (const auto points = whole(table, "points", 1, kMostLatticePoints)) measure.points = *points;
+    if (const auto samples = whole(table, "samples", 1, kMostSamples)) measure.samples = *samples;
+    const bool lattice = over == StudyPlace::workspace;
+    if (const auto spacing =
+            table.quantity("spacing", Dimension::length, lattice ? Need::required : Need::optional,
+                           "give the distance of the lattice's points, such as \"10 mm\"")) {
+      measure.spacing = *spacing;
+      if (!(*spacing > 0.0)) table.report("spacing", "must be positive", "give a length, such as \"10 mm\"");
+    }
+    const auto only_for = [&](const char* key, bool fits, const char* place) {
+      if (table.has(key) && !fits) {
+        table.report(key, fmt::format("goes with over = \"{}\"", place), "leave it out");
+      }
+    };
+    only_for("spacing", lattice, "workspace");
+    only_for("samples", over == StudyPlace::postures, "postures");
+    only_for("points", over == StudyPlace::box || over == StudyPlace::joint_ranges, "box");
+    only_for("size", over == StudyPlace::box, "box");
     if (const auto statistic = table.choice<StudyStatistic>("statistic", study_statistic_names(),
                                                             over ? Need::required : Need::optional)) {
       measure.statistic = *statistic;
@@ -342,7 +367,10 @@ const std::vector<std::pair<std::string, ChoiceRule>>& choice_rule_names() {
 
 const std::vector<std::pair<std::string, StudyStatistic>>& study_statistic_names() {
   static const std::vector<std::pair<std::string, StudyStatistic>> names = {
-      {"min", StudyStatistic::min}, {"mean", StudyStatistic::mean}, {"max", StudyStatistic::max}};
+      {"min", StudyStatistic::min},
+      {"mean", StudyStatistic::mean},
+      {"max", StudyStatistic::max},
+      {"deviation", StudyStatistic::deviation}};
   return names;
 }
 

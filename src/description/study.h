@@ -45,15 +45,18 @@ struct StudyDerived {
 enum class StudyPlace {
   device,        ///< it belongs to the device as a whole
   home,          ///< the home posture
+  middle,        ///< the middle of the joint ranges
   posture,       ///< a posture of the device file
   joints,        ///< active joint values
   position,      ///< a tool position, base frame
   joint_ranges,  ///< a lattice over the ranges of the active joints
   box,           ///< a lattice of tool positions in a box
+  workspace,     ///< a lattice of tool positions in the workspace, as in data sheets
+  postures,      ///< postures spread evenly over the joint ranges, as in data sheets
 };
 
-/// What becomes of a figure over many postures.
-enum class StudyStatistic { min, mean, max };
+/// What becomes of a figure over many postures; `deviation`: the standard one.
+enum class StudyStatistic { min, mean, max, deviation };
 
 /// A figure of the design at a place, with a name for expressions.
 struct StudyMeasure {
@@ -65,6 +68,8 @@ struct StudyMeasure {
   std::vector<std::string> position;  ///< expressions [m]
   std::vector<std::string> size;      ///< of the box, along x, y, z; expressions [m]
   int points = 5;                     ///< of a lattice, along each axis
+  double spacing = 0.0;               ///< of the lattice in the workspace [m]
+  int samples = 1000;                 ///< how many postures
   StudyStatistic statistic = StudyStatistic::mean;
   std::vector<std::string> force;              ///< on the tool, for figures under a load; expressions [N]
   std::vector<std::string> moment;             ///< expressions [N m]

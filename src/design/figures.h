@@ -1,14 +1,17 @@
 #pragma once
 
+#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "zwidth/actuation/drive.h"
 #include "zwidth/actuation/pneumatic_drive.h"
+#include "zwidth/analysis/acceleration.h"
+#include "zwidth/analysis/force.h"
 #include "zwidth/description/description.h"
 #include "zwidth/description/units.h"
 #include "zwidth/mechanism/jacobian.h"
@@ -18,6 +21,12 @@
 /// Figures of a device by name, for studies: one number each, of a posture or of the device as a whole.
 
 namespace zwidth {
+
+class BuiltDevice;
+namespace internal {
+struct DeviceCache;
+DeviceCache& cache_of(const BuiltDevice& device);
+}  // namespace internal
 
 /// A device built from its description: what figures are taken of. For one thread.
 class BuiltDevice {
@@ -38,6 +47,8 @@ class BuiltDevice {
   mutable std::optional<Mechanism> mechanism_;  // built when first asked for: some figures need none
   std::vector<std::optional<Drive>> drives_;
   std::vector<std::optional<PneumaticDrive>> pneumatic_drives_;
+  friend internal::DeviceCache& internal::cache_of(const BuiltDevice&);
+  mutable std::shared_ptr<internal::DeviceCache> cache_;
 };
 
 /// A posture of a built device, and what several figures need of it, computed once.
@@ -47,16 +58,26 @@ class PostureFigures {
   PostureFigures(const BuiltDevice& device, const Posture& posture) : device_(&device), posture_(&posture) {}
 
   const BuiltDevice& device() const { return *device_; }
+  const Mechanism& mechanism() const { return device_->mechanism(); }
   const Posture& posture() const { return *posture_; }
   const Rates& rates();
+  Jacobian linear_rows();
+  Jacobian angular_rows();
   const Dexterity& dexterity();
-  /// In the active joints, without the drives' inertia.
+  /// What the drives may give; zero for joints that have none.
+  const TorqueRange& torque_range(bool peak);
+  /// Mass matrix in the active joints, with the drives' inertia.
+  const ActiveMatrix& mass();
+  /// The same without it.
   const ActiveMatrix& link_mass();
   /// Lambda of the linear rows, with the drives' inertia or without; empty where it is not definite.
   const std::optional<ToolMatrix>& apparent_mass(bool with_drives);
+  /// Forward dynamics of the tool at rest; empty where some joint moves no mass.
+  const std::optional<ToolMotion>& motion();
   /// Of links that are beams, and of the drives if that of all is known, as `at` has it; `rigid` without
   /// either.
   const Stiffness& stiffness(bool with_drives);
+  const StiffnessOptions& stiffness_options(bool with_drives);
   /// Nothing where the tool is free, or nothing gives way.
   const std::optional<Compliance>& compliance(bool with_drives);
 
@@ -65,8 +86,11 @@ class PostureFigures {
   const Posture* posture_;
   std::optional<Rates> rates_;
   std::optional<Dexterity> dexterity_;
-  std::optional<ActiveMatrix> link_mass_;
+  std::optional<TorqueRange> torque_range_[2];
+  std::optional<ActiveMatrix> mass_, link_mass_;
   std::optional<std::optional<ToolMatrix>> apparent_mass_[2];
+  std::optional<std::optional<ToolMotion>> motion_;
+  std::optional<StiffnessOptions> stiffness_options_[2];
   std::optional<Stiffness> stiffness_[2];
   std::optional<std::optional<Compliance>> compliance_[2];
 };
@@ -81,26 +105,45 @@ struct FigureOptions {
 
 /// One further option of a figure.
 struct FigureOption {
-  std::string_view name;
-  double otherwise;  ///< its value if it is not given
-  Dimension dimension;
-  std::string_view meaning;
+  std::string name;
+  double otherwise = 0.0;  ///< its value if it is not given
+  Dimension dimension = Dimension::number;
+  std::string meaning;
+};
+
+/// Whether a figure is taken under a load of the tool.
+enum class FigureLoad { none, possible, needed };
+
+/// Where `zwidth at` or `zwidth report` say the same number.
+struct FigureAnswer {
+  /// "at gravity_torques[joint]": the verb, then the place in its JSON document. Entries of arrays are those of
+  /// an axis of the tool (x, y, z, rx, ry, rz) or of an option of the figure. Where minimum, mean and maximum
+  /// over the workspace stand there, they are those of the figure.
+  std::string place;
+  std::map<std::string, double> options = {};  ///< of the figure, then
+  double factor = 1.0;                         ///< the figure over the answer
 };
 
 struct FigureDefinition {
-  std::string_view name;     ///< snake_case
-  std::string_view unit;     ///< SI
-  std::string_view meaning;  ///< a phrase without its unit
-  bool of_posture = true;    ///< else of the device as a whole
+  std::string name;        ///< snake_case
+  std::string unit;        ///< SI; "1" of a pure number, "SI" where it depends on the device
+  std::string meaning;     ///< a phrase without its unit
+  std::string topic = {};  ///< what figures of one table are about
+  bool of_posture = true;  ///< else of the device as a whole
   bool needs_drives = false;
-  bool needs_load = false;
-  double (*of)(PostureFigures& posture, const FigureOptions& options) = nullptr;
-  double (*of_device)(const BuiltDevice& device, const FigureOptions& options) = nullptr;
-  std::span<const FigureOption> options = {};
+  int axis = -1;  ///< of the twist, that the tool must be able to move along or turn about; -1: any
+  FigureLoad load = FigureLoad::none;
+  std::vector<FigureOption> options = {};
+  std::vector<FigureAnswer> answers = {};
+  std::function<double(PostureFigures& posture, const FigureOptions& options)> of = {};
+  std::function<double(const BuiltDevice& device, const FigureOptions& options)> of_device = {};
+
+  /// Of its unit, if that is one that quantities may have.
+  std::optional<Dimension> dimension() const;
 };
 
 /// Every figure, those of postures first.
-std::span<const FigureDefinition> figure_definitions();
+const std::vector<FigureDefinition>& figure_definitions();
 /// Null if there is none of that name.
 const FigureDefinition* find_figure(std::string_view name);
 

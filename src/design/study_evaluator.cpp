@@ -3,6 +3,8 @@
 #include <limits>
 
 #include "zwidth/analysis/dexterity.h"
+#include "zwidth/analysis/posture_sweep.h"
+#include "zwidth/analysis/workspace.h"
 #include "zwidth/description/keys.h"
 #include "zwidth/design/expression.h"
 #include "zwidth/design/figures.h"
@@ -166,6 +168,8 @@ struct StudyEvaluator::Scratch {
         return;
       case StudyPlace::joint_ranges:
       case StudyPlace::box:
+      case StudyPlace::workspace:
+      case StudyPlace::postures:
         take_many(*at, measures);
         return;
       default:
@@ -205,7 +209,9 @@ struct StudyEvaluator::Scratch {
       return reach(mechanism, point);
     }
     ActiveVector active = home(mechanism);
-    if (measure.place == StudyPlace::joints) {
+    if (measure.place == StudyPlace::middle) {
+      for (int i = 0; i < active.size(); ++i) active[i] = mechanism.active_range(i).middle();
+    } else if (measure.place == StudyPlace::joints) {
       for (int i = 0; i < active.size(); ++i) active[i] = joints[m][static_cast<std::size_t>(i)]();
     } else if (measure.place == StudyPlace::posture) {
       for (const PostureDescription& one : at.description().postures) {
@@ -234,34 +240,46 @@ struct StudyEvaluator::Scratch {
     return solution;
   }
 
-  void take_many(const BuiltDevice& at, const std::vector<std::size_t>& measures) {
-    const Mechanism& mechanism = at.mechanism();
-    const std::size_t first = measures.front();
-    const StudyMeasure& place = plan->study.measures[first];
+  // Calls `use` with every posture of a place, or with an empty solution where none is reached. False if there
+  // are too many.
+  template <class Function>
+  bool each_posture(const Mechanism& mechanism, std::size_t measure, Function use) const {
+    const StudyMeasure& place = plan->study.measures[measure];
+    constexpr double kMostPostures = 1e6;
+    if (place.place == StudyPlace::postures) {
+      for (std::int64_t i = 0; i < place.samples; ++i) {
+        Solution solution = solve_forward(mechanism, spread_posture(mechanism, i));
+        if (solution.status == SolveStatus::joint_limit) solution.posture.reset();
+        use(solution);
+      }
+      return true;
+    }
+    if (place.place == StudyPlace::workspace) {
+      if (workspace_obstacle(mechanism)) return false;
+      const Vector3 edges = workspace_extents(mechanism).size();
+      double points = 1.0;
+      for (const double edge : edges) points *= edge / place.spacing + 1.0;
+      if (!(points <= kMostPostures)) return false;
+      const WorkspaceMap map = map_workspace(mechanism, {.spacing = place.spacing}, {.threads = 1});
+      for (const Vector3& point : map.positions) use(reach(mechanism, point));
+      return true;
+    }
     const bool box = place.place == StudyPlace::box;
     std::vector<Interval> axes;
     for (int i = 0; i < (box ? 3 : mechanism.active_count()); ++i) {
       const auto j = static_cast<std::size_t>(i);
-      axes.push_back(box ? Interval{position[first][j]() - 0.5 * size[first][j](),
-                                    position[first][j]() + 0.5 * size[first][j]()}
+      axes.push_back(box ? Interval{position[measure][j]() - 0.5 * size[measure][j](),
+                                    position[measure][j]() + 0.5 * size[measure][j]()}
                          : mechanism.active_range(i));
     }
     std::vector<int> count;
-    std::int64_t total = 1;
+    double total = 1.0;
     for (const Interval& axis : axes) {
       count.push_back(axis.width() > 0.0 ? place.points : 1);
       total *= count.back();
     }
-    constexpr std::int64_t kMostPostures = 1000000;
-    if (total > kMostPostures) return;
-    struct Sum {
-      double least = std::numeric_limits<double>::infinity(), most = -std::numeric_limits<double>::infinity();
-      double weighted = 0.0, weight = 0.0;
-      bool defined = true;
-    };
-    std::vector<Sum> sums(measures.size());
-    std::int64_t reached = 0;
-    for (std::int64_t p = 0; p < total; ++p) {
+    if (total > kMostPostures) return false;
+    for (std::int64_t p = 0; p < static_cast<std::int64_t>(total); ++p) {
       Eigen::VectorXd at_axes(static_cast<Eigen::Index>(axes.size()));
       std::int64_t rest = p;
       for (std::size_t a = 0; a < axes.size(); ++a) {
@@ -270,36 +288,66 @@ struct StudyEvaluator::Scratch {
         at_axes[static_cast<Eigen::Index>(a)] =
             count[a] > 1 ? axes[a].min + axes[a].width() * k / (count[a] - 1) : axes[a].middle();
       }
-      const Solution solution = box ? reach(mechanism, Vector3(at_axes)) : solve_forward(mechanism, at_axes);
-      if (!solution) continue;
-      ++reached;
-      PostureFigures posture(at, *solution.posture);
-      // Postures spread evenly over the joint ranges stand for more of the workspace where the tool moves far.
-      const double weight = box ? 1.0 : task_volume(posture.rates().tool);
-      for (std::size_t i = 0; i < measures.size(); ++i) {
-        if (plan->figures[measures[i]] == nullptr) continue;
-        const double value = figure_value(*plan->figures[measures[i]], posture, figure_options[measures[i]]);
-        Sum& sum = sums[i];
-        sum.defined = sum.defined && std::isfinite(value);
-        sum.least = std::min(sum.least, value);
-        sum.most = std::max(sum.most, value);
-        sum.weighted += weight * value;
-        sum.weight += weight;
+      use(box ? reach(mechanism, Vector3(at_axes)) : solve_forward(mechanism, at_axes));
+    }
+    return true;
+  }
+
+  // Of one figure over many postures; mean and spread by Welford's recurrence with weights (West 1979).
+  struct Sum {
+    double least = std::numeric_limits<double>::infinity(), most = -std::numeric_limits<double>::infinity();
+    double mean = 0.0, squares = 0.0, weight = 0.0;
+    bool defined = true;
+
+    void add(double value, double share) {
+      defined = defined && std::isfinite(value);
+      least = std::min(least, value);
+      most = std::max(most, value);
+      if (!(share > 0.0)) return;
+      weight += share;
+      const double step = value - mean;
+      mean += step * share / weight;
+      squares += share * step * (value - mean);
+    }
+    double statistic(StudyStatistic which) const {
+      switch (which) {
+        case StudyStatistic::min:
+          return least;
+        case StudyStatistic::max:
+          return most;
+        case StudyStatistic::deviation:
+          return std::sqrt(squares / weight);
+        default:
+          return weight > 0.0 ? mean : kUndefined;
       }
     }
-    const double share = static_cast<double>(reached) / static_cast<double>(total);
+  };
+
+  void take_many(const BuiltDevice& at, const std::vector<std::size_t>& measures) {
+    const StudyPlace place = plan->study.measures[measures.front()].place;
+    std::vector<Sum> sums(measures.size());
+    std::int64_t reached = 0, total = 0;
+    const bool possible = each_posture(at.mechanism(), measures.front(), [&](const Solution& solution) {
+      ++total;
+      if (!solution) return;
+      ++reached;
+      PostureFigures posture(at, *solution.posture);
+      // Postures on a lattice over the joint ranges stand for more of the workspace where the tool moves far.
+      const double weight = place == StudyPlace::joint_ranges ? task_volume(posture.rates().tool) : 1.0;
+      for (std::size_t i = 0; i < measures.size(); ++i) {
+        if (plan->figures[measures[i]] == nullptr) continue;
+        sums[i].add(figure_value(*plan->figures[measures[i]], posture, figure_options[measures[i]]), weight);
+      }
+    });
+    if (!possible) return;
     for (std::size_t i = 0; i < measures.size(); ++i) {
-      const Sum& sum = sums[i];
       if (plan->figures[measures[i]] == nullptr) {
-        put(measures[i], share);
+        put(measures[i], static_cast<double>(reached) / static_cast<double>(total));
         continue;
       }
       // A box has to be reached all over.
-      if (!sum.defined || reached == 0 || (box && reached < total)) continue;
-      const StudyStatistic statistic = plan->study.measures[measures[i]].statistic;
-      put(measures[i], statistic == StudyStatistic::min   ? sum.least
-                       : statistic == StudyStatistic::max ? sum.most
-                                                          : sum.weighted / sum.weight);
+      if (!sums[i].defined || reached == 0 || (place == StudyPlace::box && reached < total)) continue;
+      put(measures[i], sums[i].statistic(plan->study.measures[measures[i]].statistic));
     }
   }
 

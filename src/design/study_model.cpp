@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "zwidth/analysis/workspace.h"
 #include "zwidth/description/keys.h"
 #include "zwidth/description/names.h"
 #include "zwidth/design/expression.h"
@@ -24,11 +25,12 @@ enum class NameKind { variable, derived, measure, key };
 
 bool same_place(const StudyMeasure& a, const StudyMeasure& b) {
   return a.place == b.place && a.posture == b.posture && a.joints == b.joints && a.position == b.position &&
-         a.size == b.size && (a.place < StudyPlace::joint_ranges || a.points == b.points);
+         a.size == b.size && a.spacing == b.spacing && a.samples == b.samples &&
+         (a.place < StudyPlace::joint_ranges || a.points == b.points);
 }
 
 bool over_many(const StudyMeasure& measure) {
-  return measure.place == StudyPlace::joint_ranges || measure.place == StudyPlace::box;
+  return measure.place >= StudyPlace::joint_ranges;
 }
 
 }  // namespace
@@ -203,7 +205,7 @@ class Planner {
                 suggest(measure.figure, names) + "; `zwidth figures` lists them");
         } else if (!over_many(measure)) {
           wrong(at("measure", i, "figure"), "", "is a share of many postures",
-                "write over = \"box\" or \"joint_ranges\"");
+                "write over = \"box\", \"postures\" or \"joint_ranges\"");
         }
       } else {
         check_measure(measure, *figure, i);
@@ -244,18 +246,31 @@ class Planner {
 
   void check_measure(const StudyMeasure& measure, const FigureDefinition& figure, std::size_t i) {
     if (figure.of_posture && measure.place == StudyPlace::device) {
-      wrong(at("measure", i, "figure"), fmt::format("\"{}\"", measure.figure), "is a figure of a posture",
-            "say where: at = \"home\", joints = [...], position = [...] or over = \"box\"");
+      wrong(
+          at("measure", i, "figure"), fmt::format("\"{}\"", measure.figure), "is a figure of a posture",
+          "say where: at = \"home\", joints = [...], position = [...], over = \"box\" or over = \"workspace\"");
     }
     if (!figure.of_posture && measure.place != StudyPlace::device) {
       wrong(at("measure", i, "figure"), fmt::format("\"{}\"", measure.figure),
             "is a figure of the device as a whole", "leave the posture out");
     }
+    const std::span<const int> axes = mechanism().tool_axes();
+    if (figure.axis >= 0 && std::find(axes.begin(), axes.end(), figure.axis) == axes.end()) {
+      wrong(at("measure", i, "figure"), fmt::format("\"{}\"", measure.figure),
+            fmt::format("does not concern this device: its tool does not {} {}",
+                        figure.axis < 3 ? "move along" : "turn about", "xyz"[figure.axis % 3]),
+            "take another axis");
+    }
+    if (const auto obstacle = workspace_obstacle(mechanism());
+        measure.place == StudyPlace::workspace && obstacle) {
+      wrong(at("measure", i, "over"), "", fmt::format("cannot be asked of this device: {}", *obstacle),
+            "write over = \"postures\", or over = \"box\"");
+    }
     const bool load = !measure.force.empty() || !measure.moment.empty();
-    if (figure.needs_load && !load) {
+    if (figure.load == FigureLoad::needed && !load) {
       wrong(at("measure", i, "figure"), fmt::format("\"{}\"", measure.figure), "is a figure under a load",
             "add force = [\"20 N\", 0, 0], say");
-    } else if (!figure.needs_load && load) {
+    } else if (figure.load == FigureLoad::none && load) {
       wrong(at("measure", i, "force"), "", fmt::format("means nothing for {}", measure.figure), "leave it out");
     }
     std::vector<std::string> known;
@@ -443,8 +458,15 @@ class Planner {
     return use;
   }
 
+  // Of the device as its file has it.
+  const Mechanism& mechanism() {
+    if (!mechanism_) mechanism_.emplace(plan_.device);
+    return *mechanism_;
+  }
+
   StudyModel::Plan plan_;
   Description device_;  // whose slots are looked at
+  std::optional<Mechanism> mechanism_;
   std::vector<NameKind> kinds_;
   std::set<std::string> claimed_;                             // keys that are set
   std::map<std::string, std::vector<std::size_t>> names_of_;  // of each expression's text

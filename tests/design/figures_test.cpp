@@ -1,8 +1,11 @@
 #include "zwidth/design/figures.h"
 
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <set>
+#include <sstream>
 
 #include "zwidth/analysis/force.h"
 #include "zwidth/analysis/workspace.h"
@@ -24,6 +27,54 @@ double at(const BuiltDevice& device, const ActiveVector& joints, std::string_vie
   EXPECT_TRUE(solution) << name;
   PostureFigures posture(device, *solution.posture);
   return figure_value(*find_figure(name), posture, options);
+}
+
+// docs/figures.md as the table of figures makes it.
+std::string document() {
+  std::string text =
+      "# Figures\n\nWhat a `[[measure]]` of a [study](study_file.md) may ask for; `zwidth figures` lists the "
+      "same, and "
+      "`zwidth figures WORD` what\nis about one thing. Units are SI; where none stands, the number has none or "
+      "it depends on "
+      "the device. Options have their value\nin brackets if they are not given; those that count start from 0, "
+      "and -1 takes "
+      "all. Each figure equals what stands in the\nlast column: in `zwidth at DEVICE ... --json`, or in "
+      "`zwidth report DEVICE "
+      "--json`, where over the workspace.\n";
+  std::string heading;
+  for (const FigureDefinition& figure : figure_definitions()) {
+    const std::string group =
+        figure.topic + (figure.of_posture ? ", of a posture" : ", of the device as a whole");
+    if (group != heading)
+      text += "\n## " + group + "\n\n| figure | unit | what | options | same as |\n|---|---|---|---|---|\n";
+    heading = group;
+    const bool unitless = figure.unit == "1" || figure.unit == "SI";
+    std::string options, answers;
+    if (figure.load != FigureLoad::none) {
+      options = figure.load == FigureLoad::needed ? "`force`, `moment`" : "`force`, `moment` if there are any";
+    }
+    for (const FigureOption& one : figure.options) {
+      std::string value = std::to_string(one.otherwise);
+      value.erase(value.find_last_not_of('0') + 1);
+      if (value.back() == '.') value.pop_back();
+      options += (options.empty() ? "" : "; ") + ("`" + one.name + "` (" + value + ") ") + one.meaning;
+    }
+    for (const FigureAnswer& one : figure.answers) answers += (answers.empty() ? "`" : ", `") + one.place + "`";
+    text += "| `" + figure.name + "` | " + (unitless ? "" : figure.unit) + " | " + figure.meaning + " | " +
+            options + " | " + answers + " |\n";
+  }
+  return text;
+}
+
+TEST(Figures, TheDocumentHasThemAll) {
+  if (std::getenv("ZWIDTH_UPDATE") != nullptr) {
+    std::ofstream(ZWIDTH_FIGURES_DOC) << document();
+    return;
+  }
+  std::ostringstream text;
+  text << std::ifstream(ZWIDTH_FIGURES_DOC).rdbuf();
+  EXPECT_TRUE(text.str() == document())
+      << "docs/figures.md is out of date; ZWIDTH_UPDATE=1 design_test writes it anew";
 }
 
 TEST(Figures, HaveNamesOfTheirOwn) {

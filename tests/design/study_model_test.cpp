@@ -5,7 +5,13 @@
 #include <random>
 
 #include "zwidth/actuation/arm_cylinder.h"
+#include "zwidth/analysis/conditioning.h"
+#include "zwidth/analysis/data_sheet.h"
 #include "zwidth/analysis/five_bar_search.h"
+#include "zwidth/analysis/inertia.h"
+#include "zwidth/analysis/joint_torque.h"
+#include "zwidth/analysis/mechanical.h"
+#include "zwidth/analysis/posture_sweep.h"
 #include "zwidth/analysis/r_cube_synthesis.h"
 #include "zwidth/description/read.h"
 #include "zwidth/description/validate.h"
@@ -233,6 +239,100 @@ TEST(StudyModel, BoxesHaveToBeReachedAllOver) {
   EXPECT_TRUE(std::isnan(undefined));
 }
 
+// Two routes: a measure over the workspace, or over postures, and the sweeps of data sheets.
+class OverMany {
+ public:
+  explicit OverMany(const std::string& device) : device_(device) {}
+  double operator()(const std::string& figure, const std::string& place, const std::string& statistic) const {
+    const std::string text =
+        "[study]\nname = \"s\"\ndevice = \"" + device_ +
+        "\"\n[[variable]]\nname = \"v\"\nmin = 1\nmax = 2\n[[measure]]\nname = \"m\"\nfigure = \"" + figure +
+        "\"\n" + place + "\nstatistic = \"" + statistic + "\"\n[[objective]]\nname = \"o\"\nminimise = \"v\"\n";
+    const Loaded loaded = load(parse_study(text, "study.toml", {}, check()));
+    const StudyModel model(loaded.study, loaded.device, catalogue());
+    return StudyEvaluator(model).sheet(std::vector{1.0}).derived[0].value;
+  }
+
+ private:
+  std::string device_;
+};
+
+TEST(StudyModel, TheWorkspaceIsThatOfDataSheets) {
+  const std::string place = "over = \"workspace\"\nspacing = \"20 mm\"";
+  for (const char* device : {"delta", "five-bar", "r-cube"}) {
+    const OverMany ask(device);
+    const Description description = read_description(device, {}, catalogue());
+    const Mechanism mechanism = mechanism_with_drives(description);
+    const auto drives = joint_drives(description, mechanism);
+    const LatticeSweep sweep = sweep_workspace(
+        mechanism, {.spacing = 0.02, .limits = drive_limits(drives, false), .all_figures = true});
+    const auto compare = [&](const std::string& figure, const Statistic& expected, double factor = 1.0) {
+      if (expected.count == 0) return;
+      for (const auto& [statistic, value] :
+           {std::pair("min", expected.min), std::pair("mean", expected.mean), std::pair("max", expected.max)}) {
+        EXPECT_NEAR(ask(figure, place, statistic) / (factor * value), 1.0, 1e-9) << device << " " << figure;
+      }
+    };
+    compare("condition_number", sweep[Figure::condition_number]);
+    compare("manipulability", sweep[Figure::manipulability]);
+    compare("force_x", sweep[Figure::force_x]);
+    compare("force_min", sweep[Figure::weakest_force]);
+    compare("force_max", sweep[Figure::strongest_force]);
+    compare("step_y", sweep[Figure::step_y]);
+    compare("leg_singularity", sweep[Figure::leg_singularity]);
+    if (mechanism.delta()) compare("platform_singularity", sweep[Figure::platform_singularity]);
+    const InertiaSweep inertia = sweep_inertia(mechanism, 0.02);
+    compare("apparent_mass_x", inertia.along_axes[0]);
+    compare("apparent_mass_min", inertia.lightest);
+    compare("apparent_mass_max", inertia.heaviest);
+    compare("gravity_torque", inertia.gravity_torque);
+    const MechanicalSweep mechanics = sweep_mechanics(mechanism, drives, 0.02);
+    compare("acceleration_min", mechanics[MechanicalFigure::acceleration]);
+    if (mechanics.of) {
+      compare("stiffness_y", mechanics[MechanicalFigure::stiffness_y]);
+      compare("stiffness_min", mechanics[MechanicalFigure::softest]);
+      compare("natural_frequency", mechanics[MechanicalFigure::frequency_held], 0.5 / M_PI);
+      compare("free_natural_frequency", mechanics[MechanicalFigure::frequency_free], 0.5 / M_PI);
+    }
+    const GlobalConditioning conditioning = sweep_conditioning(mechanism, 0.02).of_all;
+    EXPECT_NEAR(ask("inverse_condition", place, "mean"), conditioning.index(), 1e-9) << device;
+    EXPECT_NEAR(ask("inverse_condition", place, "min"), conditioning.worst(), 1e-9) << device;
+    EXPECT_NEAR(ask("inverse_condition", place, "deviation"), conditioning.spread(), 1e-9) << device;
+    EXPECT_NEAR(ask("well_conditioned", place, "mean"), conditioning.share(ConditionClass::below_5), 1e-9);
+    EXPECT_NEAR(ask("well_conditioned", place + "\noptions = { limit = 2 }", "mean"),
+                conditioning.near_isotropic(), 1e-9);
+  }
+}
+
+TEST(StudyModel, PosturesAreThoseOfDataSheets) {
+  const std::string place = "over = \"postures\"\nsamples = 400";
+  for (const char* device : {"seven-dof", "pneumatic-3"}) {
+    const OverMany ask(device);
+    const Description description = read_description(device, {}, catalogue());
+    const Mechanism mechanism = mechanism_with_drives(description);
+    const auto drives = joint_drives(description, mechanism);
+    const auto cylinders = joint_pneumatic_drives(description, mechanism);
+    const PostureSweep sweep =
+        sweep_postures(mechanism, {.samples = 400, .torque = [&](const Posture& posture) {
+                                     return torque_range(drives, cylinders, posture.active(), false);
+                                   }});
+    const auto compare = [&](const std::string& figure, const PostureStatistic& expected) {
+      if (expected.count == 0) return;
+      for (const auto& [statistic, value] :
+           {std::pair("min", expected.min), std::pair("mean", expected.mean), std::pair("max", expected.max)}) {
+        EXPECT_NEAR(ask(figure, place, statistic) / value, 1.0, 1e-6) << device << " " << figure;
+      }
+    };
+    compare("inverse_condition", sweep.translation_conditioning);
+    compare("rotation_inverse_condition", sweep.rotation_conditioning);
+    compare("manipulability", sweep.manipulability);
+    compare("force_z", sweep.force[2]);
+    compare("moment_y", sweep.moment[1]);
+    compare("apparent_mass_min", sweep.lightest);
+    compare("gravity_torque", sweep.gravity_torque);
+  }
+}
+
 TEST(StudyProblems, SaysWhatIsUnknownAndWhatIsNear) {
   EXPECT_NE(
       complaint(small(std::string("[[variable]]\nkey = \"mechanism.cranck\"\nmin = 1\nmax = 2\n") + kSmallest))
@@ -271,6 +371,11 @@ TEST(StudyProblems, RefusesWhatMakesNoSense) {
       {good + "[[measure]]\nname = \"k\"\nfigure = \"condition_number\"\njoints = [1]\n", "must be 2"},
       {good + "[[measure]]\nname = \"k\"\nfigure = \"deflection\"\nat = \"home\"\n", "under a load"},
       {good + "[[measure]]\nname = \"k\"\nfigure = \"moving_mass\"\noptions = { x = 1 }\n", "no option"},
+      {good + "[[measure]]\nname = \"k\"\nfigure = \"force_z\"\nat = \"home\"\n", "does not move along z"},
+      {good + "[[measure]]\nname = \"k\"\nfigure = \"moment_x\"\nat = \"home\"\n", "does not turn about x"},
+      {good + "[[measure]]\nname = \"k\"\nfigure = \"force_x\"\nover = \"workspace\"\nstatistic = \"min\"\n",
+       "distance of the lattice"},
+      {good + "[[measure]]\nname = \"k\"\nfigure = \"force_x\"\nat = \"home\"\nsamples = 3\n", "goes with"},
       {good + "[[constraint]]\nname = \"c\"\nvalue = \"a1\"\n", "no limit"},
       {good + "[choice]\nweights = { lenght = 1 }\n", "no objective"},
       {good + "[search]\nalgorithm = \"nsga3\"\n", "nsga2"},

@@ -1,6 +1,7 @@
 #include "study.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <fstream>
 
 #include "context.h"
@@ -21,11 +22,43 @@ bool names_study(const std::string& study) {
   return false;
 }
 
+namespace {
+
+// What is wrong with the device, placed where the study says it: at the entry of `set`, or the device's name.
+// Throws the error again where it stands in the device's own file.
+std::vector<Problem> of_device(const DescriptionError& error, const Study& study) {
+  std::vector<Problem> placed;
+  for (const Problem& problem : error.problems()) {
+    const std::string text =
+        problem.key.empty() ? problem.rule : fmt::format("makes {} wrong: it {}", problem.key, problem.rule);
+    std::size_t entry = study.overrides.size();
+    for (std::size_t i = 0; i < study.overrides.size(); ++i) {
+      const std::string& one = study.overrides[i];
+      const std::string key = one.substr(0, std::min(one.find('='), one.size()));
+      if (problem.file == "--set " + key.substr(0, key.find_last_not_of(' ') + 1)) entry = i;
+    }
+    if (entry < study.overrides.size()) {
+      placed.push_back({.key = fmt::format("study.set[{}]", entry), .rule = text, .advice = problem.advice});
+    } else if (problem.line == 0 && problem.key.empty()) {
+      placed.push_back({.key = "study.device", .rule = problem.rule, .advice = problem.advice});
+    } else {
+      throw error;
+    }
+  }
+  return placed;
+}
+
+}  // namespace
+
 std::unique_ptr<StudyModel> read_study_model(const std::string& study,
                                              const std::vector<std::string>& overrides) {
   const auto device_of = [](const Study& one) { return read_device(one.device, one.overrides); };
-  const Study read = read_study(study, overrides, catalogue(), [&](const Study& one) {
-    return study_problems(one, device_of(one), catalogue());
+  const Study read = read_study(study, overrides, catalogue(), [&](const Study& one) -> std::vector<Problem> {
+    try {
+      return study_problems(one, device_of(one), catalogue());
+    } catch (const DescriptionError& error) {
+      return of_device(error, one);
+    }
   });
   return std::make_unique<StudyModel>(read, device_of(read), catalogue());
 }

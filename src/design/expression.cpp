@@ -11,43 +11,15 @@
 
 #include "zwidth/description/problem.h"
 #include "zwidth/description/units.h"
+#include "zwidth/design/internal/expression_text.h"
 
 namespace zwidth {
 namespace {
 
-constexpr const char* kNameCharacters = "0123456789_.[]abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
-
-bool digit(char c) {
-  return c >= '0' && c <= '9';
-}
-bool name_start(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-bool name_character(char c) {
-  return std::string_view(kNameCharacters).find(c) != std::string_view::npos;
-}
-
-// Where the number that starts at `from` ends.
-std::size_t number_end(std::string_view text, std::size_t from) {
-  std::size_t end = from;
-  const auto digits = [&] {
-    while (end < text.size() && digit(text[end])) ++end;
-  };
-  digits();
-  if (end < text.size() && text[end] == '.') {
-    ++end;
-    digits();
-  }
-  if (end < text.size() && (text[end] == 'e' || text[end] == 'E')) {
-    std::size_t power = end + 1;
-    if (power < text.size() && (text[power] == '+' || text[power] == '-')) ++power;
-    if (power < text.size() && digit(text[power])) {
-      end = power;
-      digits();
-    }
-  }
-  return end;
-}
+using internal::kNameCharacters;
+using internal::name_character;
+using internal::name_start;
+using internal::number_end;
 
 const std::vector<std::string>& function_names() {
   static const std::vector<std::string> names = {
@@ -85,7 +57,7 @@ std::string without_units(std::string_view text, ParsedExpression& problem) {
       i += compares ? 2 : 1;
       continue;
     }
-    if (!digit(text[i]) && !(text[i] == '.' && i + 1 < text.size() && digit(text[i + 1]))) {
+    if (!internal::number_start(text, i)) {
       result += text[i++];
       continue;
     }

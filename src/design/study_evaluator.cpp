@@ -1,14 +1,18 @@
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 
+#include "zwidth/actuation/drive_problems.h"
 #include "zwidth/analysis/dexterity.h"
 #include "zwidth/analysis/posture_sweep.h"
 #include "zwidth/analysis/workspace.h"
 #include "zwidth/description/keys.h"
+#include "zwidth/description/validate.h"
 #include "zwidth/design/expression.h"
 #include "zwidth/design/figures.h"
 #include "zwidth/design/internal/study_plan.h"
+#include "zwidth/mechanism/beam_link.h"
 
 /// Designs of a study, evaluated.
 
@@ -351,6 +355,30 @@ struct StudyEvaluator::Scratch {
     }
   }
 
+  // REQUIRES: the device is built, and the measure was taken and is undefined.
+  std::string undefined_because(std::size_t m) {
+    const BuiltDevice& at = *build();
+    const StudyMeasure& measure = plan->study.measures[m];
+    const auto no_figure = [&] {
+      return fmt::format("{} has no value {}", measure.figure,
+                         measure.place == StudyPlace::device ? "for this device" : "in that posture");
+    };
+    if (measure.place == StudyPlace::device) return no_figure();
+    if (measure.place < StudyPlace::joint_ranges) {
+      return solve(at, measure, m) ? no_figure() : "asks for a posture that the device cannot take";
+    }
+    std::int64_t reached = 0, total = 0;
+    const bool possible = each_posture(at.mechanism(), m, [&](const Solution& solution) {
+      ++total;
+      reached += solution ? 1 : 0;
+    });
+    if (!possible) return "asks for more than a million postures, or a workspace that cannot be had";
+    if (reached == 0) return "asks for postures of which the device takes none";
+    if (measure.place == StudyPlace::box && reached < total)
+      return "asks for a box that is not reached all over";
+    return fmt::format("{} has no value in some of its postures", measure.figure);
+  }
+
   void prepare(const Use& use) {
     for (const std::size_t group : use.groups) take(group);
     for (const std::size_t d : use.after) values[plan->derived_value[d]] = derived[d]();
@@ -482,6 +510,85 @@ DesignSheet StudyEvaluator::sheet(std::span<const double> design, std::span<cons
   sheet.feasible = holds;
   if (!tolerance.empty()) s.restore_tolerances();
   return sheet;
+}
+
+std::vector<DesignObstacle> StudyEvaluator::obstacles(std::span<const double> design) {
+  Scratch& s = *scratch_;
+  const StudyModel::Plan& plan = *s.plan;
+  const Study& study = plan.study;
+  std::vector<DesignObstacle> found;
+  const auto place = [](const char* table, std::size_t i, const char* key) {
+    return fmt::format("{}[{}].{}", table, i, key);
+  };
+  // An expression without a value whose names all have one.
+  const auto look_at = [&](const std::string& text, double value, std::string where) {
+    if (!std::isnan(value) || text.empty()) return;
+    std::string with;
+    for (const std::string& name : parse_expression(text).names) {
+      const double one = s.values[plan.index.at(name)];
+      if (std::isnan(one)) return;
+      with += fmt::format("{}{} = {:.6g}", with.empty() ? "" : ", ", name, one);
+    }
+    found.push_back({std::move(where), text, "has no value: it divides by zero, or the like", std::move(with)});
+  };
+  const bool defined = s.set(design, {});
+  for (const std::size_t d : plan.before) {
+    if (plan.derived_use[d].of_figures()) continue;
+    look_at(study.derived[d].value, s.values[plan.derived_value[d]], place("derived", d, "value"));
+  }
+  bool holds = true;
+  for (std::size_t c = 0; c < study.constraints.size(); ++c) {
+    if (plan.constraint_use[c].of_figures()) continue;
+    const double value = s.constraints[c](), violation = s.violation(c, value);
+    look_at(study.constraints[c].value, value, place("constraint", c, "value"));
+    if (s.low[c]) look_at(study.constraints[c].min, (*s.low[c])(), place("constraint", c, "min"));
+    if (s.high[c]) look_at(study.constraints[c].max, (*s.high[c])(), place("constraint", c, "max"));
+    holds = holds && violation == 0.0;
+  }
+  if (!found.empty() || !defined || !holds) return found;
+  if (const BuiltDevice* at = s.build(); at == nullptr) {
+    std::vector<Problem> problems = value_problems(s.device);
+    if (problems.empty()) problems = beam_problems(s.device);
+    if (problems.empty() && plan.with_drives) problems = drive_problems(s.device);
+    if (problems.empty()) problems.push_back({.key = "device", .rule = "cannot be built"});
+    const Problem& first = problems.front();
+    std::string with;
+    if (const auto slots = find_numbers(s.device, first.key); !slots.empty()) {
+      with = fmt::format("{} = {:.6g}", first.key, slots.front().get());
+    }
+    return {{"", first.key, first.rule, with}};
+  }
+  for (std::size_t g = 0; g < plan.groups.size(); ++g) {
+    s.take(g);
+    for (const std::size_t m : plan.groups[g].measures) {
+      if (std::isnan(s.values[plan.measure_value[m]])) {
+        found.push_back({place("measure", m, "figure"), study.measures[m].name, s.undefined_because(m), ""});
+      }
+    }
+  }
+  const auto look_after = [&](const Use& use) {
+    s.prepare(use);
+    for (const std::size_t d : use.after) {
+      look_at(study.derived[d].value, s.values[plan.derived_value[d]], place("derived", d, "value"));
+    }
+  };
+  for (std::size_t c = 0; c < study.constraints.size(); ++c) {
+    look_after(plan.constraint_use[c]);
+    look_at(study.constraints[c].value, s.constraints[c](), place("constraint", c, "value"));
+    if (s.low[c]) look_at(study.constraints[c].min, (*s.low[c])(), place("constraint", c, "min"));
+    if (s.high[c]) look_at(study.constraints[c].max, (*s.high[c])(), place("constraint", c, "max"));
+  }
+  for (std::size_t o = 0; o < study.objectives.size(); ++o) {
+    look_after(plan.objective_use[o]);
+    const StudyObjective& one = study.objectives[o];
+    look_at(one.value, s.objectives[o](), place("objective", o, one.maximise ? "maximise" : "minimise"));
+  }
+  // What several ask for is said once.
+  std::vector<DesignObstacle> once;
+  for (DesignObstacle& one : found) {
+    if (std::find(once.begin(), once.end(), one) == once.end()) once.push_back(std::move(one));
+  }
+  return once;
 }
 
 Description StudyEvaluator::description(std::span<const double> design, const std::string& source) {

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <random>
 #include <set>
 
 #include "zwidth/analysis/workspace.h"
 #include "zwidth/description/keys.h"
 #include "zwidth/description/names.h"
 #include "zwidth/design/expression.h"
+#include "zwidth/design/expression_unit.h"
 #include "zwidth/design/internal/study_plan.h"
 
 namespace zwidth {
@@ -50,8 +52,12 @@ class Planner {
     look_up_figures();
     look_up_algorithm();
     parse_everything();
+    check_ends();
     if (problems_.empty()) order();
+    if (problems_.empty()) check_units();
+    if (problems_.empty()) check_defined();
     if (problems_.empty()) {
+      note_units();
       for (const StudyConstraint& one : study.constraints) {
         plan_.constraint_use.push_back(use_of({one.value, one.min, one.max}));
       }
@@ -168,6 +174,7 @@ class Planner {
   }
 
   void look_up_parts(const StudyVariable& variable, std::size_t i) {
+    std::set<std::pair<std::size_t, std::string_view>> said;
     for (const std::string& key : variable.keys) {
       const std::vector<PartSlot> slots = find_parts(device_, key);
       if (slots.empty()) {
@@ -184,6 +191,8 @@ class Planner {
         const std::vector<std::string> names = part_names(slot, *plan_.catalogue);
         for (std::size_t p = 0; p < variable.parts.size(); ++p) {
           if (std::find(names.begin(), names.end(), variable.parts[p]) != names.end()) continue;
+          // Said once, however many parts of the device take it.
+          if (!said.insert({p, slot.kind()}).second) continue;
           wrong(fmt::format("variable[{}].parts[{}]", i, p), fmt::format("\"{}\"", variable.parts[p]),
                 fmt::format("is no {} of the catalogue", slot.kind()), suggest(variable.parts[p], names));
         }
@@ -362,6 +371,217 @@ class Planner {
       parse(study.constraints[i].value, at("constraint", i, "value"));
       parse(study.constraints[i].min, at("constraint", i, "min"));
       parse(study.constraints[i].max, at("constraint", i, "max"));
+    }
+  }
+
+  // What a name measures; nothing where it may be anything.
+  std::optional<UnitPowers> unit_of(std::size_t name, BareNumber bare) {
+    const Study& study = plan_.study;
+    const auto place_in = [name](const std::vector<std::size_t>& list) {
+      return static_cast<std::size_t>(std::find(list.begin(), list.end(), name) - list.begin());
+    };
+    switch (kinds_[name]) {
+      case NameKind::variable: {
+        const StudyVariable& one = study.variables[place_in(plan_.variable_value)];
+        if (!one.parts.empty()) return std::nullopt;
+        if (!one.keys.empty()) return unit_powers(find_numbers(device_, one.keys.front()).front().dimension);
+        return one.dimension ? std::optional(unit_powers(*one.dimension)) : std::nullopt;
+      }
+      case NameKind::key:
+        return unit_powers(find_numbers(device_, plan_.names[name]).front().dimension);
+      case NameKind::measure: {
+        const FigureDefinition* figure = plan_.figures[place_in(plan_.measure_value)];
+        if (figure == nullptr) return UnitPowers{};
+        if (figure->unit == "J") return unit_powers(Dimension::torque);
+        const std::optional<Dimension> dimension = figure->dimension();
+        return dimension ? std::optional(unit_powers(*dimension)) : std::nullopt;
+      }
+      default: {
+        const StudyDerived& one = study.derived[place_in(plan_.derived_value)];
+        if (!one.keys.empty()) return unit_powers(find_numbers(device_, one.keys.front()).front().dimension);
+        return unit_of(one.value, bare).unit;
+      }
+    }
+  }
+  // REQUIRES: no derived value follows from itself.
+  ExpressionUnit unit_of(const std::string& text, BareNumber bare) {
+    return expression_unit(
+        text, [&](const std::string& name) { return unit_of(plan_.index.at(name), bare); }, bare);
+  }
+
+  // An expression has to add up, and to be of the kind that is wanted.
+  std::optional<UnitPowers> check_unit(const std::string& text, const std::string& place,
+                                       const std::optional<UnitPowers>& wanted = {},
+                                       const std::string& of = "") {
+    if (text.empty()) return std::nullopt;
+    const ExpressionUnit found = unit_of(text, BareNumber::any);
+    if (!found.rule.empty()) {
+      wrong(place, fmt::format("\"{}\"", text), found.rule, "give both the same kind of unit");
+    } else if (found.unit && wanted && !(*found.unit == *wanted)) {
+      wrong(place, fmt::format("\"{}\"", text),
+            fmt::format("is {}, but {} is {}", unit_words(*found.unit), of, unit_words(*wanted)),
+            "give it in units of that kind");
+    }
+    return found.unit;
+  }
+
+  void check_units() {
+    const Study& study = plan_.study;
+    for (std::size_t i = 0; i < study.derived.size(); ++i) {
+      const StudyDerived& one = study.derived[i];
+      if (one.keys.empty()) check_unit(one.value, at("derived", i, "value"));
+      for (const std::string& key : one.keys) {
+        const std::size_t before = problems_.size();
+        check_unit(one.value, at("derived", i, "value"),
+                   unit_powers(find_numbers(device_, key).front().dimension), key);
+        if (problems_.size() > before) break;
+      }
+    }
+    const std::vector<Dimension> joints = active_joint_dimensions(device_.mechanism);
+    for (std::size_t i = 0; i < study.measures.size(); ++i) {
+      const StudyMeasure& one = study.measures[i];
+      const auto each = [&](const std::vector<std::string>& texts, const char* key, Dimension dimension,
+                            const char* of) {
+        for (std::size_t j = 0; j < texts.size(); ++j) {
+          check_unit(texts[j], at("measure", i, fmt::format("{}[{}]", key, j)), unit_powers(dimension), of);
+        }
+      };
+      for (std::size_t j = 0; j < one.joints.size(); ++j) {
+        check_unit(one.joints[j], at("measure", i, fmt::format("joints[{}]", j)), unit_powers(joints[j]),
+                   "that joint's value");
+      }
+      each(one.position, "position", Dimension::length, "a position");
+      each(one.size, "size", Dimension::length, "an edge");
+      each(one.force, "force", Dimension::force, "a force");
+      each(one.moment, "moment", Dimension::torque, "a moment");
+      for (const auto& [key, text] : one.options) {
+        if (plan_.figures[i] == nullptr) continue;
+        for (const FigureOption& option : plan_.figures[i]->options) {
+          if (option.name == key) {
+            check_unit(text, at("measure", i, "options." + key), unit_powers(option.dimension), key);
+          }
+        }
+      }
+    }
+    for (std::size_t i = 0; i < study.objectives.size(); ++i) {
+      const StudyObjective& one = study.objectives[i];
+      check_unit(one.value, at("objective", i, one.maximise ? "maximise" : "minimise"));
+    }
+    for (std::size_t i = 0; i < study.constraints.size(); ++i) {
+      const StudyConstraint& one = study.constraints[i];
+      const std::optional<UnitPowers> value = check_unit(one.value, at("constraint", i, "value"));
+      check_unit(one.min, at("constraint", i, "min"), value, one.value);
+      check_unit(one.max, at("constraint", i, "max"), value, one.value);
+    }
+  }
+
+  // Limits that exclude each other, where both are plain numbers.
+  void check_ends() {
+    for (std::size_t i = 0; i < plan_.study.constraints.size(); ++i) {
+      const StudyConstraint& one = plan_.study.constraints[i];
+      if (one.min.empty() || one.max.empty()) continue;
+      const ParsedExpression low = parse_expression(one.min), high = parse_expression(one.max);
+      if (!low || !high || !low.names.empty() || !high.names.empty()) continue;
+      if (Expression(one.min, {})() > Expression(one.max, {})()) {
+        wrong(at("constraint", i, "max"), fmt::format("\"{}\"", one.max),
+              fmt::format("is less than min, {}: nothing is between them", one.min), "exchange the two");
+      }
+    }
+  }
+
+  // Whether an expression has a value at all, for some values of its names: tried, not proven.
+  bool ever_defined(const std::string& text) {
+    std::map<std::string, double> values;
+    const std::vector<std::size_t>& names = names_of_.at(text);
+    for (const std::size_t name : names) values[plan_.names[name]] = 0.0;
+    const Expression expression(text, [&](const std::string& name) { return &values.at(name); });
+    std::minstd_rand random(1);
+    std::uniform_real_distribution<double> share(0.0, 1.0), decades(-6.0, 6.0);
+    constexpr int kTries = 500;
+    for (int attempt = 0; attempt < kTries; ++attempt) {
+      for (const std::size_t name : names) {
+        double& value = values[plan_.names[name]];
+        value = std::pow(10.0, decades(random)) * (share(random) < 0.2 ? -1.0 : 1.0);
+        if (attempt % 3 == 0) value = share(random);
+        if (kinds_[name] == NameKind::key && attempt % 2 == 0) {
+          value = find_numbers(device_, plan_.names[name]).front().get();
+        }
+        if (kinds_[name] != NameKind::variable || attempt % 4 == 3) continue;
+        for (std::size_t v = 0; v < plan_.study.variables.size(); ++v) {
+          const StudyVariable& one = plan_.study.variables[v];
+          if (plan_.variable_value[v] == name) value = one.min + share(random) * (one.max - one.min);
+        }
+      }
+      if (!std::isnan(expression())) return true;
+    }
+    return false;
+  }
+
+  void check_defined() {
+    const auto check = [&](const std::string& text, const std::string& place) {
+      if (text.empty() || names_of_.at(text).empty() || ever_defined(text)) return;
+      std::string names;
+      for (const std::size_t name : names_of_.at(text))
+        names += (names.empty() ? "" : ", ") + plan_.names[name];
+      wrong(place, fmt::format("\"{}\"", text),
+            fmt::format("has no value, whatever {} may be: it divides by zero, or the like", names),
+            "change it");
+    };
+    const Study& study = plan_.study;
+    for (std::size_t i = 0; i < study.derived.size(); ++i)
+      check(study.derived[i].value, at("derived", i, "value"));
+    for (std::size_t i = 0; i < study.objectives.size(); ++i) {
+      const StudyObjective& one = study.objectives[i];
+      check(one.value, at("objective", i, one.maximise ? "maximise" : "minimise"));
+    }
+    for (std::size_t i = 0; i < study.constraints.size(); ++i) {
+      check(study.constraints[i].value, at("constraint", i, "value"));
+      check(study.constraints[i].min, at("constraint", i, "min"));
+      check(study.constraints[i].max, at("constraint", i, "max"));
+    }
+  }
+
+  // The unit of an expression's value for people; empty where it cannot be told.
+  std::string shown_unit(const std::string& text) {
+    const auto known = plan_.index.find(text);
+    if (known != plan_.index.end()) return shown_unit(known->second);
+    const ExpressionUnit found = unit_of(text, BareNumber::pure);
+    return found.unit ? unit_text(*found.unit) : "";
+  }
+  std::string shown_unit(std::size_t name) {
+    const auto place_in = [name](const std::vector<std::size_t>& list) {
+      return static_cast<std::size_t>(std::find(list.begin(), list.end(), name) - list.begin());
+    };
+    const auto of_key = [&](const std::string& key) {
+      return std::string(si_unit(find_numbers(device_, key).front().dimension));
+    };
+    switch (kinds_[name]) {
+      case NameKind::variable: {
+        const StudyVariable& one = plan_.study.variables[place_in(plan_.variable_value)];
+        if (!one.parts.empty()) return "";
+        if (!one.keys.empty()) return of_key(one.keys.front());
+        return std::string(si_unit(one.dimension.value_or(Dimension::number)));
+      }
+      case NameKind::key:
+        return of_key(plan_.names[name]);
+      case NameKind::measure: {
+        const FigureDefinition* figure = plan_.figures[place_in(plan_.measure_value)];
+        if (figure == nullptr) return "1";
+        const bool varies = figure->unit == "SI" || figure->unit.ends_with("^n");
+        return varies ? "" : figure->unit;
+      }
+      default: {
+        const StudyDerived& one = plan_.study.derived[place_in(plan_.derived_value)];
+        return one.keys.empty() ? shown_unit(one.value) : of_key(one.keys.front());
+      }
+    }
+  }
+  void note_units() {
+    for (std::size_t name = 0; name < plan_.names.size(); ++name) plan_.units.push_back(shown_unit(name));
+    for (const StudyObjective& one : plan_.study.objectives)
+      plan_.objective_units.push_back(shown_unit(one.value));
+    for (const StudyConstraint& one : plan_.study.constraints) {
+      plan_.constraint_units.push_back(shown_unit(one.value));
     }
   }
 

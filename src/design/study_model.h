@@ -28,6 +28,16 @@ struct DesignValue {
   Dimension dimension = Dimension::number;
 };
 
+/// Why a design is not defined as the study asks: a rule of device files, an expression, or a figure.
+struct DesignObstacle {
+  std::string place;  ///< key of the study file, such as "derived[2].value"; empty for a rule of device files
+  std::string what;   ///< the expression, the measure by its name, or the key of the device
+  std::string rule;   ///< "has no value: it divides by zero, or the like"
+  std::string with;   ///< the values of its names here: "D = 0.1, x = 2"
+
+  bool operator==(const DesignObstacle&) const = default;
+};
+
 /// Everything that a study can say about one design.
 struct DesignSheet {
   bool built = false;  ///< no rule of descriptions is broken; measures are undefined otherwise
@@ -86,6 +96,10 @@ class StudyEvaluator {
   /// All of it, whatever is broken. `tolerance`: how far each tolerance of the study strays, from -1 to 1;
   /// empty for not at all.
   DesignSheet sheet(std::span<const double> design, std::span<const double> tolerance = {});
+
+  /// Why it is not `built`, or not all that `evaluate` asks of it is defined: the first cause alone of each
+  /// that follows from another. Empty where nothing is the matter, or a constraint without figures is broken.
+  std::vector<DesignObstacle> obstacles(std::span<const double> design);
 
   /// The design as a description, which may break rules (`sheet().built`). `source` is noted for all that the
   /// study decides.

@@ -132,10 +132,15 @@ TEST_F(OptimiseRobustness, LeavesOutDesignsThatDivideByZero) {
   ASSERT_EQ(some.status, 0) << some.err;
   EXPECT_EQ(some.json().at("chosen").at("variables").at("n"), 1.0);
   EXPECT_EQ(some.json().at("constraints")[0].at("held"), 4);
-  const Outcome all = optimise(scratch_.file("all.toml", numbered("1/(n - n)")), "all");
+  const Outcome all = optimise(scratch_.file("all.toml", numbered("1/min(n, 0)")), "all");
   EXPECT_EQ(all.status, 1) << all.err;
   EXPECT_EQ(all.json().at("status"), "infeasible");
   EXPECT_EQ(all.json().at("constraints")[0].at("held"), 0);
+  EXPECT_EQ(all.json().at("undefined")[0].at("what"), "1/min(n, 0)");
+  // What can never have a value is a mistake of the study.
+  const Outcome never = optimise(scratch_.file("never.toml", numbered("1/(n - n)")), "never");
+  EXPECT_EQ(never.status, 2);
+  EXPECT_NE(never.err.find("has no value, whatever n may be"), std::string::npos) << never.err;
 }
 
 TEST_F(OptimiseRobustness, SaysThatConstraintsExcludeEachOther) {

@@ -52,6 +52,41 @@ TEST(Optimise, WritesADeviceThatReportReads) {
   EXPECT_NE(device.find("chosen: by the study even"), std::string::npos);
 }
 
+TEST(Optimise, PlacesMistakesAboutTheDeviceInTheStudy) {
+  const ScratchDirectory scratch;
+  std::string text = even_study(2);
+  text.insert(text.find("[search]"), "set = [\"mechanism.coupler = '17 kg'\", \"mechanism.half_bse=1\"]\n");
+  const Outcome outcome = run({"check", scratch.file("even.toml", text)});
+  EXPECT_EQ(outcome.status, 2);
+  for (const char* said : {"even.toml:4:8: study.set[0]", "mechanism.coupler wrong", "a length was expected",
+                           "study.set[1]", "did you mean \"half_base\"", "2 problems"}) {
+    EXPECT_NE(outcome.err.find(said), std::string::npos) << said << "\n" << outcome.err;
+  }
+  std::string other = even_study(2);
+  other.replace(other.find("five-bar"), 8, "five-bra");
+  const Outcome unknown = run({"check", scratch.file("other.toml", other)});
+  EXPECT_NE(unknown.err.find("other.toml:3:10: study.device"), std::string::npos) << unknown.err;
+  EXPECT_NE(unknown.err.find("five-bar"), std::string::npos) << unknown.err;
+}
+
+// A division by zero in every design of a part of the space, and a box that is out of reach in another.
+TEST(Optimise, NamesWhatIsUndefinedWithAnExample) {
+  const ScratchDirectory scratch;
+  const std::string text =
+      even_study(3) +
+      "[[constraint]]\nname = \"root\"\nvalue = \"sqrt(mechanism.half_base - crank)\"\nmax = 1\n";
+  const Outcome outcome =
+      run({"optimise", scratch.file("even.toml", text), "-o", (scratch.path() / "out").string()});
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_NE(outcome.out.find("sqrt(mechanism.half_base - crank)"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("16 of 16 designs"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("crank ="), std::string::npos) << outcome.out;
+  const auto document = nlohmann::json::parse(read_text(scratch.path() / "out" / "pareto.json"));
+  ASSERT_EQ(document["undefined"].size(), 1U);
+  EXPECT_EQ(document["undefined"][0]["key"], "constraint[1].value");
+  EXPECT_EQ(document["undefined"][0]["count"], 16);
+}
+
 TEST(Optimise, GoesOnWhereItWasStopped) {
   const ScratchDirectory scratch;
   const std::string study = scratch.file("even.toml", kEven);

@@ -15,6 +15,7 @@
 #include "zwidth/analysis/r_cube_synthesis.h"
 #include "zwidth/description/read.h"
 #include "zwidth/description/validate.h"
+#include "zwidth/design/expression_unit.h"
 
 namespace zwidth {
 namespace {
@@ -333,6 +334,89 @@ TEST(StudyModel, PosturesAreThoseOfDataSheets) {
   }
 }
 
+TEST(StudyProblems, SaysAPartThatIsNoneOnce) {
+  const std::string said = complaint(
+      small("[[variable]]\nname = \"m\"\nkey = [\"drive[0].motor\", \"drive[1].motor\"]\nparts = "
+            "[\"maxon-ec-max-40-70w-48v\", \"no-such\"]\n[[objective]]\nname = \"o\"\nminimise = \"m\"\n"));
+  const std::size_t first = said.find("no-such");
+  EXPECT_NE(first, std::string::npos) << said;
+  EXPECT_EQ(said.find("no-such", first + 1), std::string::npos) << said;
+}
+
+TEST(StudyProblems, LetsWholeNumbersBeWithoutUnits) {
+  EXPECT_EQ(complaint(small(std::string(kCrank) + kSmallest +
+                            "[[constraint]]\nname = \"c\"\nvalue = \"a1 - 0.01\"\nmin = 0.01\nmax = \"1 m\"\n"
+                            "[[derived]]\nkey = \"mechanism.coupler\"\nvalue = \"0.1 + 2*a1*a1\"\n")),
+            "");
+}
+
+// What an expression measures, with numbers that are plain.
+TEST(ExpressionUnit, IsThatOfItsParts) {
+  const auto of_name = [](const std::string& name) -> std::optional<UnitPowers> {
+    if (name == "l") return unit_powers(Dimension::length);
+    if (name == "f") return unit_powers(Dimension::force);
+    if (name == "m") return unit_powers(Dimension::mass);
+    if (name == "phi") return unit_powers(Dimension::angle);
+    return std::nullopt;
+  };
+  const auto text_of = [&](const char* text) {
+    const ExpressionUnit found = expression_unit(text, of_name, BareNumber::pure);
+    return !found.rule.empty() ? found.rule : found.unit ? unit_text(*found.unit) : "unknown";
+  };
+  const std::pair<const char*, const char*> cases[] = {
+      {"2*l + 3 mm", "m"},
+      {"f / m", "m/s^2"},
+      {"f / l", "N/m"},
+      {"-l^2 * 4", "m^2"},
+      {"sqrt(l*l)", "m"},
+      {"log10(f)", "1"},
+      {"l > 2 mm ? f : 3 N", "N"},
+      {"max(l, 2 mm) * f", "N m"},
+      {"f * l^2 / m", "m^3 s^-2"},
+      {"sin(phi / 2)", "1"},
+      {"atan2(l, 2 mm)", "1"},
+      {"x * l", "unknown"},
+      {"l + f", "adds a length and a force"},
+      {"min(l, m)", "compares a length and a mass"},
+      {"cos(f)", "takes the cos of a force"},
+  };
+  for (const auto& [text, unit] : cases) {
+    EXPECT_EQ(text_of(text), unit) << text;
+  }
+  EXPECT_FALSE(expression_unit("450e-7 * (l / 80 mm)^3", of_name, BareNumber::any).unit);
+}
+
+TEST(StudyModel, SaysWhatIsUndefinedAndWhere) {
+  const StudyModel model = small_model(
+      std::string(kCrank) +
+      "[[derived]]\nname = \"d\"\nvalue = \"1 / sqrt(a1 - 10 cm)\"\n"
+      "[[measure]]\nname = \"k\"\nfigure = \"condition_number\"\nposition = [0, \"a1 + 11 cm\", 0]\n"
+      "[[objective]]\nname = \"o\"\nminimise = \"k * d\"\n");
+  StudyEvaluator evaluator(model);
+  EXPECT_TRUE(evaluator.obstacles(std::vector{0.11}).empty());
+  const std::vector<DesignObstacle> root = evaluator.obstacles(std::vector{0.095});
+  ASSERT_EQ(root.size(), 1U);  // what follows from it is not said again
+  EXPECT_EQ(root[0].place, "derived[0].value");
+  EXPECT_EQ(root[0].what, "1 / sqrt(a1 - 10 cm)");
+  EXPECT_EQ(root[0].with, "a1 = 0.095");
+  // Farther than both links.
+  const StudyModel far =
+      small_model(std::string(kCrank) +
+                  "[[measure]]\nname = \"k\"\nfigure = \"condition_number\"\nposition = [0, \"1 m\", 0]\n"
+                  "[[objective]]\nname = \"o\"\nminimise = \"k\"\n");
+  const std::vector<DesignObstacle> reach = StudyEvaluator(far).obstacles(std::vector{0.1});
+  ASSERT_EQ(reach.size(), 1U);
+  EXPECT_EQ(reach[0].place, "measure[0].figure");
+  EXPECT_NE(reach[0].rule.find("cannot take"), std::string::npos);
+  const StudyModel broken = small_model(
+      "[[variable]]\nkey = \"mechanism.half_base\"\nmin = \"2 cm\"\nmax = \"60 cm\"\n"
+      "[[measure]]\nname = \"k\"\nfigure = \"moving_mass\"\n[[objective]]\nname = \"k\"\nminimise = \"k\"\n");
+  const std::vector<DesignObstacle> rule = StudyEvaluator(broken).obstacles(std::vector{0.5});
+  ASSERT_EQ(rule.size(), 1U);
+  EXPECT_EQ(rule[0].place, "");
+  EXPECT_FALSE(rule[0].rule.empty());
+}
+
 TEST(StudyProblems, SaysWhatIsUnknownAndWhatIsNear) {
   EXPECT_NE(
       complaint(small(std::string("[[variable]]\nkey = \"mechanism.cranck\"\nmin = 1\nmax = 2\n") + kSmallest))
@@ -377,6 +461,22 @@ TEST(StudyProblems, RefusesWhatMakesNoSense) {
        "distance of the lattice"},
       {good + "[[measure]]\nname = \"k\"\nfigure = \"force_x\"\nat = \"home\"\nsamples = 3\n", "goes with"},
       {good + "[[constraint]]\nname = \"c\"\nvalue = \"a1\"\n", "no limit"},
+      {good + "[[constraint]]\nname = \"c\"\nvalue = \"a1\"\nmin = \"3 mm\"\nmax = \"2 mm\"\n",
+       "is less than min"},
+      {good + "[[constraint]]\nname = \"c\"\nvalue = \"a1\"\nmin = \"3 N\"\n",
+       "is a force, but a1 is a length"},
+      {good + "[[derived]]\nname = \"p\"\nvalue = \"a1 + 2 kg\"\n", "adds a length and a mass"},
+      {good + "[[derived]]\nname = \"p\"\nvalue = \"sin(a1)\"\n", "the sin of a length"},
+      {good + "[[derived]]\nkey = \"mechanism.coupler\"\nvalue = \"a1 * 2 m\"\n",
+       "is an area, but mechanism.coupler is a length"},
+      {good + "[[derived]]\nname = \"p\"\nvalue = \"a1 / (a1 - a1)\"\n", "has no value, whatever a1 may be"},
+      {good + "[[objective]]\nname = \"a1\"\nminimise = \"2 * a1\"\n", "the name of a variable too"},
+      {good + "[[constraint]]\nname = \"length\"\nvalue = \"a1\"\nmax = 1\n", "the name of an objective too"},
+      {good + "[[derived]]\nkey = \"mechanism.coupler\"\nvalue = \"mechanism.coupler + 1 mm\"\n",
+       "follows from itself"},
+      // What else is wrong is said although an objective is missing.
+      {std::string(kCrank) + "[[tolerance]]\nkey = \"mechanism.cranck\"\nhalf_width = \"1 mm\"\n",
+       "did you mean"},
       {good + "[choice]\nweights = { lenght = 1 }\n", "no objective"},
       {good + "[search]\nalgorithm = \"nsga3\"\n", "nsga2"},
       {good + "[search]\npopulation = 2.5\n", "whole number"},

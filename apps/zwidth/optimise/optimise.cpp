@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <random>
 #include <thread>
 
 #include "interrupt.h"
@@ -187,6 +188,7 @@ StudyOutcome run_search(const StudyModel& model, const OptimiseArguments& argume
   outcome.problem.evaluate = study_evaluation(model, arguments.threads, &stop_on_interrupt());
   if (ranks != nullptr) {
     outcome.workers *= ranks->size();
+    outcome.ranks = ranks->size() > 1;
     outcome.problem.evaluate = ranks->spread(outcome.problem.variables.size(), outcome.problem.outcome_size(),
                                              outcome.problem.evaluate);
   }
@@ -223,6 +225,47 @@ StudyOutcome run_search(const StudyModel& model, const OptimiseArguments& argume
   }
   options.progress = nullptr;
   return outcome;
+}
+
+/// Draws designs to say what of them is undefined, and why, where some could not be evaluated.
+void find_obstacles(StudyOutcome& outcome, const StudyModel& model) {
+  const std::vector<ConstraintRecord>& records = outcome.result.constraints;
+  const bool all_defined = std::all_of(records.begin(), records.end(), [&](const ConstraintRecord& one) {
+    return one.undefined == 0 && (&one != &records.front() || one.held == outcome.result.evaluations);
+  });
+  if (all_defined || records.empty()) return;
+  // A small part of what the search itself cost.
+  constexpr std::int64_t kFew = 16, kMany = 256, kPart = 20;
+  outcome.looked_at = static_cast<int>(std::clamp(outcome.result.evaluations / kPart, kFew, kMany));
+  StudyEvaluator evaluator(model);
+  std::mt19937_64 random(model.study().search.seed);
+  std::vector<double> design(outcome.problem.variables.size());
+  for (int i = 0; i < outcome.looked_at && !stop_on_interrupt(); ++i) {
+    for (std::size_t v = 0; v < design.size(); ++v) {
+      const SearchVariable& one = outcome.problem.variables[v];
+      const double share = std::uniform_real_distribution<double>(0.0, 1.0)(random);
+      design[v] = one.integer ? std::min(std::floor(one.min + share * (one.max - one.min + 1.0)), one.max)
+                              : one.min + share * (one.max - one.min);
+    }
+    for (DesignObstacle& found : evaluator.obstacles(design)) {
+      const auto known =
+          std::find_if(outcome.obstacles.begin(), outcome.obstacles.end(), [&](const CountedObstacle& one) {
+            return one.first.place == found.place && one.first.what == found.what &&
+                   one.first.rule == found.rule;
+          });
+      if (known != outcome.obstacles.end()) {
+        ++known->count;
+        continue;
+      }
+      std::string example;
+      for (const DesignValue& one : evaluator.sheet(design).variables) {
+        example += fmt::format("{}{} = {}", example.empty() ? "" : ", ", one.name, value_text(one));
+      }
+      outcome.obstacles.push_back({std::move(found), std::move(example), 1});
+    }
+  }
+  std::stable_sort(outcome.obstacles.begin(), outcome.obstacles.end(),
+                   [](const CountedObstacle& a, const CountedObstacle& b) { return a.count > b.count; });
 }
 
 /// Improves the chosen design nearby; the better one joins the front.
@@ -288,6 +331,7 @@ int optimise(OptimiseArguments arguments, const Terminal& terminal) {
     find_slopes(outcome, *model, arguments.threads);
     try_tolerances(outcome, *model, arguments.threads, arguments.samples);
   }
+  find_obstacles(outcome, *model);
   for (const std::string& note : outcome.result.notes) complain(note);
   const auto files = write_outcome(outcome, *model, directory.string());
   if (arguments.json) {

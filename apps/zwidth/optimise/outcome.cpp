@@ -104,6 +104,10 @@ std::string never_met(const StudyOutcome& outcome) {
     const ConstraintRecord& record = outcome.result.constraints[c];
     if (record.held > 0) continue;
     text += fmt::format("\"{}\" was never met", outcome.problem.constraints[c]);
+    if (c == 0) {  // "can be built" is yes or no; what is in the way is said below
+      text += "\n";
+      continue;
+    }
     text += std::isfinite(record.least_violation)
                 ? fmt::format("; the least violation found is {}\n", number(record.least_violation))
                 : ", and never defined\n";
@@ -112,6 +116,16 @@ std::string never_met(const StudyOutcome& outcome) {
 }
 
 }  // namespace
+
+std::string obstacle_text(const CountedObstacle& one, int looked_at) {
+  const DesignObstacle& first = one.first;
+  const std::string table = first.place.substr(0, first.place.find('['));
+  const std::string what = first.place.empty()  ? fmt::format("the rule of device files that {}", first.what)
+                           : table == "measure" ? fmt::format("measure \"{}\"", first.what)
+                                                : fmt::format("{} \"{}\"", first.place, first.what);
+  return fmt::format("{} {}: in {} of {} designs drawn, such as {}{}", what, first.rule, one.count, looked_at,
+                     one.example, first.with.empty() ? "" : fmt::format(", where {}", first.with));
+}
 
 Json outcome_json(const StudyOutcome& outcome, const StudyModel& model) {
   const Study& study = model.study();
@@ -155,6 +169,15 @@ Json outcome_json(const StudyOutcome& outcome, const StudyModel& model) {
     entry["least_violation"] = json_number(record.least_violation);
     document["constraints"].push_back(entry);
   }
+  document["undefined"] = Json::array();
+  for (const CountedObstacle& one : outcome.obstacles) {
+    document["undefined"].push_back({{"key", one.first.place},
+                                     {"what", one.first.what},
+                                     {"rule", one.first.rule},
+                                     {"count", one.count},
+                                     {"of", outcome.looked_at},
+                                     {"example", one.example}});
+  }
   document["pareto"] = Json::array();
   for (const DesignSheet& sheet : outcome.front) document["pareto"].push_back(sheet_json(sheet, study));
   document["chosen"] = nullptr;
@@ -192,12 +215,14 @@ std::string outcome_text(const StudyOutcome& outcome, const StudyModel& model, c
             fmt::format("{} generations, {}", generations, to_words(result.end)));
   const double total = result.seconds_evaluating + result.seconds_in_algorithm;
   if (total > 0.0) {
-    sheet.row(
-        "time", quantity(total, 1.0, "s", 3),
-        fmt::format("{:.0f} % evaluating on {} {}, {:.0f} % in the algorithm; {} designs/s",
-                    100.0 * result.seconds_evaluating / total, outcome.workers,
-                    outcome.workers == 1 ? "thread" : "threads", 100.0 * result.seconds_in_algorithm / total,
-                    number(static_cast<double>(result.evaluations) / total, 3)));
+    sheet.row("time", quantity(total, 1.0, "s", 3),
+              fmt::format("{:.0f} % evaluating on {} {}, {:.0f} % in the algorithm; {} designs/s",
+                          100.0 * result.seconds_evaluating / total, outcome.workers,
+                          outcome.ranks          ? "ranks"
+                          : outcome.workers == 1 ? "thread"
+                                                 : "threads",
+                          100.0 * result.seconds_in_algorithm / total,
+                          number(static_cast<double>(result.evaluations) / total, 3)));
   }
   if (!result.history.empty()) {
     const Generation& last = result.history.back();
@@ -215,6 +240,11 @@ std::string outcome_text(const StudyOutcome& outcome, const StudyModel& model, c
               "evaluations" + (result.first_failure.empty() ? "" : "; the first: " + result.first_failure));
   }
 
+  if (outcome.chosen && !outcome.obstacles.empty()) {
+    const CountedObstacle& most = outcome.obstacles.front();
+    sheet.row("undefined", fmt::format("{} of {}", most.count, outcome.looked_at),
+              obstacle_text(most, outcome.looked_at));
+  }
   if (!outcome.chosen) {
     sheet.heading("No design meets all constraints");
     const std::string text = never_met(outcome);
@@ -229,6 +259,9 @@ std::string outcome_text(const StudyOutcome& outcome, const StudyModel& model, c
       const std::size_t end = text.find('\n', from);
       sheet.paragraph(text.substr(from, end - from), 2, Tint::bad);
       from = end + 1;
+    }
+    for (const CountedObstacle& one : outcome.obstacles) {
+      sheet.paragraph(obstacle_text(one, outcome.looked_at), 2, Tint::bad);
     }
   } else {
     const DesignSheet& chosen = outcome.front[*outcome.chosen];

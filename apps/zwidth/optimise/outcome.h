@@ -21,6 +21,13 @@ struct ChosenSlopes {
   Sensitivity slopes;                  ///< of the objectives, not negated
 };
 
+/// Something that is undefined in some designs, and why.
+struct CountedObstacle {
+  DesignObstacle first;
+  std::string example;  ///< a design where it is so: "a = 12 mm, b = ..."
+  int count = 0;
+};
+
 struct StudyOutcome {
   SearchProblem problem;
   SearchOptions options;
@@ -30,7 +37,10 @@ struct StudyOutcome {
   std::string choice;                 ///< how it was chosen, in words
   std::optional<ChosenSlopes> slopes;
   std::optional<ToleranceStudy> tolerances;  ///< of objectives, then violations
+  std::vector<CountedObstacle> obstacles;    ///< most frequent first
+  int looked_at = 0;                         ///< how many designs, drawn at random, those are counted in
   int workers = 1;                           ///< threads, or ranks, that evaluated
+  bool ranks = false;                        ///< the latter
 
   /// Row of `SearchResult::designs` of a design of the front.
   std::span<const double> design(std::size_t front_row) const;
@@ -47,6 +57,9 @@ std::string value_text(const DesignValue& value);
 std::vector<std::pair<std::string, std::string>> write_outcome(const StudyOutcome& outcome,
                                                                const StudyModel& model,
                                                                const std::string& directory);
+
+/// "measure "force" asks for a box that is not reached all over: in 12 of 256 designs drawn, such as ...".
+std::string obstacle_text(const CountedObstacle& one, int looked_at);
 
 /// The outcome as one document (docs/json.md, optimise).
 Json outcome_json(const StudyOutcome& outcome, const StudyModel& model);

@@ -40,6 +40,8 @@ struct StudyModel::Plan {
   const Catalogue* catalogue = nullptr;
 
   std::vector<std::string> names;  // whose values are kept: variables, derived, measures, keys
+  std::vector<std::string> units;  // of each, SI, for people; empty where it depends on the device
+  std::vector<std::string> objective_units, constraint_units;
   std::map<std::string, std::size_t> index;
   std::vector<std::size_t> variable_value, derived_value, measure_value;  // of each, in `names`
   std::vector<std::string> keys;                                          // read by expressions

@@ -90,7 +90,9 @@ double dynamic_manipulability(const ToolMotion& motion) {
 }
 
 Zonotope acceleration_polytope(const ToolMotion& motion, const TorqueRange& range) {
-  return zonotope(segments_of(motion, range));
+  Zonotope polytope = zonotope(segments_of(motion, range));
+  if (polytope.inner_radius <= kSingular * polytope.outer_radius) polytope.inner_radius = 0.0;
+  return polytope;
 }
 
 MotionPower motion_power(const Mechanism& mechanism, std::span<const MotionSample> motion) {

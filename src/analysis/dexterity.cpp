@@ -11,6 +11,10 @@ namespace zwidth {
 namespace {
 
 double conditioning(const Jacobian& jacobian) {
+  if (jacobian.cols() < jacobian.rows()) {  // of the motions that it has
+    const SmallVector sigma = svd(jacobian).sigma;
+    return sigma[0] > 0.0 ? sigma[sigma.size() - 1] / sigma[0] : 0.0;
+  }
   const double number = dexterity(jacobian).condition_number;
   return std::isfinite(number) ? 1.0 / number : 0.0;
 }

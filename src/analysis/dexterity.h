@@ -35,8 +35,9 @@ struct CharacteristicLength {
 };
 
 /// The length with the smallest condition number of the homogeneous Jacobian. 1 m where the units are
-/// homogeneous already, or every length leaves it singular. It depends on the posture: state it with the
-/// figure, and compare devices of different sizes only at their own.
+/// homogeneous already, or every length leaves it singular. With fewer joints than rows that of the motions
+/// which there are: the largest singular value over the smallest of as many as there are joints. It depends on
+/// the posture: state it with the figure, and compare devices of different sizes only at their own.
 CharacteristicLength characteristic_length(const Jacobian& jacobian, const JacobianUnits& units);
 
 /// One length for many postures: the largest mean of 1/(condition number).

@@ -425,6 +425,13 @@ Zonotope zonotope(const Segments& segments) {
 
   const Vertices normals = face_normals(segments, longest);
   result.inner_radius = normals.empty() ? 0.0 : kInfinity;
+  if (normals.empty() && longest > 0.0 && d > 1) {  // all on one line: across it there is nothing
+    Eigen::Index along = 0, axis = 0;
+    segments.columns.colwise().norm().maxCoeff(&along);
+    const PolytopeVector line = segments.columns.col(along).normalized();
+    line.cwiseAbs().minCoeff(&axis);
+    result.inner_direction = (PolytopeVector::Unit(d, axis) - line[axis] * line).normalized();
+  }
   for (const PolytopeVector& normal : normals) {
     for (const double sign : {1.0, -1.0}) {
       const double distance = support(segments, sign * normal);

@@ -103,9 +103,28 @@ TEST(MechanismErrors, AreNoneInASoundFile) {
 }
 
 TEST(MechanismErrors, OverConstrainedIsAWarning) {
-  // As a mechanism in space, each leg says again that the tool stays in the plane.
+  // Two legs of three parallel hinges each, across each other (Sarrus 1853): both say that the plate does not
+  // tilt.
+  std::string sarrus = "[device]\nname = \"sarrus\"\n[mechanism]\ntype = \"legs\"\nplatform = \"rigid\"\n";
+  for (const bool along_x : {true, false}) {
+    const auto point = [along_x](const char* out, const char* up) {
+      return along_x ? std::string("[") + out + ", 0, " + up + "]"
+                     : std::string("[0, ") + out + ", " + up + "]";
+    };
+    sarrus += std::string("[[leg]]\nname = \"") + (along_x ? "a" : "b") +
+              "\"\ntip = [0, 0, 0.2]\nattachment = \"rigid\"\nplatform_point = [0, 0, 0]\n";
+    const struct {
+      const char *name, *out, *up;
+    } hinges[] = {{"foot", "0.1", "0"}, {"knee", "0.2", "0.1"}, {"hip", "0.1", "0.2"}};
+    for (const auto& [name, out, up] : hinges) {
+      sarrus += std::string("[[leg.joint]]\nname = \"") + name +
+                "\"\ntype = \"revolute\"\naxis = " + (along_x ? "[0, 1, 0]" : "[1, 0, 0]") +
+                "\npoint = " + point(out, up) + "\n";
+      if (along_x && std::string_view(name) == "foot") sarrus += "active = true\nrange = [-0.5, 0.5]\n";
+    }
+  }
   const ScratchDirectory scratch;
-  const std::string file = scratch.file("bars.toml", with(kBars, "planar-translation", "translation"));
+  const std::string file = scratch.file("sarrus.toml", sarrus);
   const Outcome outcome = run({"check", file, "--json"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   const auto device = outcome.json()["devices"][0];
@@ -114,6 +133,27 @@ TEST(MechanismErrors, OverConstrainedIsAWarning) {
   EXPECT_NE(device["warnings"].dump().find("over-constrained: 1 equation in the loops repeats others"),
             std::string::npos)
       << device["warnings"];
+}
+
+// Whatever the platform is said to do, in a plane the legs need not say again that it stays there.
+TEST(MechanismErrors, APlaneCountsAsOneForAPlatformThatMightLeaveIt) {
+  const ScratchDirectory scratch;
+  for (const char* platform : {"translation", "point"}) {
+    const std::string file = scratch.file("bars.toml", with(kBars, "planar-translation", platform));
+    const Outcome outcome = run({"check", file, "--json"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const auto mobility = outcome.json()["devices"][0]["mobility"];
+    EXPECT_EQ(mobility["gruebler"], 2) << platform;
+    EXPECT_EQ(mobility["group"], "planar") << platform;
+    EXPECT_EQ(mobility["verdict"], "constrained") << platform;
+  }
+}
+
+// Of the R-CUBE's postures hardly any is left if a link is too short: it stands at home and nowhere else.
+TEST(MechanismErrors, ADeviceThatOnlyStandsAtHomeIsNone) {
+  const Outcome outcome = run({"check", "r-cube", "--set", "mechanism.outer_link=10 mm"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("closes its legs at home alone"), std::string::npos) << outcome.err;
 }
 
 TEST(MechanismErrors, AssemblyThatIsImpossible) {

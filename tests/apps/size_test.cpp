@@ -139,6 +139,18 @@ TEST(Size, FitsEightyColumns) {
   }
 }
 
+// A position leaves the posture of an arm open: it is that nearest to home, as of `at --position`.
+TEST(Size, AtAPositionTakesThePostureOfAt) {
+  const Json at = run({"at", "seven-dof", "--position", "0.3,0,0.1", "--load", "1,2,3", "--json"}).json();
+  const Json size = run({"size", "seven-dof", "--position", "0.3,0,0.1", "--load", "1,2,3", "--json"}).json();
+  ASSERT_EQ(size["joints"].size(), 7U);
+  EXPECT_EQ(size["where"], "position");
+  for (std::size_t j = 0; j < 7; ++j)
+    EXPECT_NEAR(size["joints"][j]["required"].get<double>(), std::abs(at["torques"][j].get<double>()), 1e-9)
+        << j;
+  EXPECT_EQ(run({"size", "seven-dof", "--position", "3,0,0"}).status, 1);
+}
+
 TEST(Size, WrongLoadsAndPosturesAreExplained) {
   struct Mistake {
     std::vector<std::string> arguments;
@@ -152,7 +164,6 @@ TEST(Size, WrongLoadsAndPosturesAreExplained) {
       {{"size", "seven-dof", "--load", "nan,0,0"}, "nan"},
       {{"size", "seven-dof", "--load", "10 N along w"}, "10 N along w"},
       {{"size", "seven-dof", "--posture", "critical 9"}, "is no [[posture]]"},
-      {{"size", "seven-dof", "--position", "0.3,0,0.1"}, "leaves its posture open"},
       {{"size", "seven-dof", "--load", "0,0,1", "--kind", "peek"}, "did you mean \"peak\"?"},
       {{"size", "seven-dof", "--joints", "0,1"}, "give 7 values"},
   };

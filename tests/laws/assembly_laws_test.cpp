@@ -202,7 +202,8 @@ TEST_P(RandomAssemblyMode, IsKept) {
   const int kinds = test::random_mechanism_kinds(), count = (cases(210) + kinds - 1) / kinds;
   Tally tally;
   for (int k = 0; k < count; ++k) {
-    const auto seed = static_cast<std::uint64_t>(GetParam() + k * kinds);
+    const int number = GetParam() + k * kinds;
+    const auto seed = static_cast<std::uint64_t>(number);
     const test::RandomMechanism made = test::random_mechanism(seed);
     SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << made.kind);
     const Mechanism mechanism(made.description);

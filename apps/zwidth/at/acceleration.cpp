@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -17,6 +18,7 @@ namespace zwidth::at {
 namespace {
 
 constexpr const char* kNoMass = "not given by the source: the mass that some joint moves";
+constexpr double kIdle = 1e-9;   // of a response: directions come out of sums, and of roots of them
 constexpr double kNone = 1e-12;  // of the largest: what rounding leaves of a mobility that is zero
 
 /// At the given rates, in the user's frame; nothing where some joint moves no mass.
@@ -179,9 +181,13 @@ void write_acceleration_limits(const Situation& at, Answer& answer) {
                                       unit, number(polytope.outer_radius)),
                           fmt::format("least along ({})", direction_text(polytope.inner_direction)));
       } else {
-        answer.page().row(
-            label, "none",
-            fmt::format("the weight takes more along ({})", direction_text(polytope.inner_direction)));
+        double most = 0.0;  // that a drive gives along it
+        for (Eigen::Index j = 0; j < part.response.cols(); ++j)
+          most = std::max(most, std::abs(polytope.inner_direction.dot(part.response.col(j))));
+        const bool idle = most <= kIdle * part.response.norm();
+        answer.page().row(label, "none",
+                          fmt::format("{} along ({})", idle ? "the tool cannot move" : "the weight takes more",
+                                      direction_text(polytope.inner_direction)));
       }
     });
     entry[name] = figures;

@@ -7,6 +7,7 @@
 #include "section.h"
 
 #include "zwidth/analysis/force.h"
+#include "zwidth/math/svd.h"
 
 /// How evenly the tool moves and pushes.
 
@@ -22,8 +23,37 @@ JacobianUnits units_of(const Situation& at) {
 
 namespace {
 
+/// The rows of the Jacobian that move, where the legs keep the tool from moving or turning some way: they are
+/// zero but for a singularity.
+struct Moving {
+  Jacobian J;
+  JacobianUnits units;
+};
+Moving moving_rows(const Situation& at) {
+  Moving moving{at.J, units_of(at)};
+  if (at.singularity.loses || at.singularity.gains) return moving;
+  std::vector<Eigen::Index> rows;
+  int linear = 0;
+  for (Eigen::Index r = 0; r < at.J.rows(); ++r) {
+    if (at.J.row(r).isZero(0.0)) continue;
+    rows.push_back(r);
+    linear += r < at.frame.linear() ? 1 : 0;
+  }
+  if (rows.empty()) return moving;
+  moving.J = at.J(rows, Eigen::all);
+  moving.units.linear_rows = linear;
+  return moving;
+}
+
+/// A square Jacobian with the singular values of one that has fewer joints than rows; others as they are.
+Jacobian own_motions(const Jacobian& J) {
+  if (J.cols() >= J.rows()) return J;
+  return svd(J).u.leftCols(J.cols()).transpose() * J;
+}
+
 /// Translations and rotations by themselves, and both together with a radian as a length.
-void write_mixed(const Situation& at, const JacobianUnits& units, Answer& answer) {
+void write_mixed(const Situation& at, const Moving& moving, Answer& answer) {
+  const auto& [J, units] = moving;
   const std::string reason = "metres and radians cannot be compared: see homogeneous";
   answer.undefined("condition_number", reason);
   answer.undefined("manipulability", reason);
@@ -33,26 +63,27 @@ void write_mixed(const Situation& at, const JacobianUnits& units, Answer& answer
     if (shown) answer.page().cells("condition number", {"infinite"}, "1 is best");
     return;
   }
-  const CharacteristicLength best = characteristic_length(at.J, units);
+  const CharacteristicLength best = characteristic_length(J, units);
   Json entry;
   entry["length"] = json_number(best.length);
   entry["condition_number"] = json_number(best.condition_number);
-  entry["isotropy"] = json_number(isotropy(homogeneous(at.J, units, best.length)));
+  entry["isotropy"] = json_number(isotropy(own_motions(homogeneous(J, units, best.length))));
   const auto of_one_kind = [&](const char* key, const Jacobian& rows) {
     const Dexterity figures = dexterity(rows);
     entry[key] = {{"condition_number", json_number(figures.condition_number)},
                   {"isotropy", json_number(isotropy(rows))}};
     if (shown) answer.cell(fmt::format("condition number, {}", key), figures.condition_number, "1 is best");
   };
-  const int linear = at.frame.linear();
-  if (units.sliding_joints == 0 && linear > 0 && linear < at.J.rows()) {
-    of_one_kind("translation", at.J.topRows(linear));
-    of_one_kind("rotation", at.J.bottomRows(at.J.rows() - linear));
+  const int linear = units.linear_rows;
+  if (units.sliding_joints == 0 && linear > 0 && linear < J.rows()) {
+    of_one_kind("translation", J.topRows(linear));
+    of_one_kind("rotation", J.bottomRows(J.rows() - linear));
   }
   answer.put("homogeneous", entry);
   if (shown)
     answer.cell("condition number, both", best.condition_number,
-                fmt::format("a radian as {} mm: least so", number(best.length * 1e3)));
+                fmt::format("a radian as {} mm: least so{}", number(best.length * 1e3),
+                            J.cols() < J.rows() ? "; of the motions that there are" : ""));
 }
 
 Json ellipsoid_entry(const Ellipsoid& ellipsoid) {
@@ -75,18 +106,19 @@ std::string half_axes(const Ellipsoid& ellipsoid, double factor, const char* uni
 }  // namespace
 
 void write_dexterity(const Situation& at, Answer& answer) {
-  const JacobianUnits units = units_of(at);
-  if (!units.homogeneous(at.J)) {
-    write_mixed(at, units, answer);
+  const Moving moving = moving_rows(at);
+  const auto& [J, units] = moving;
+  if (!units.homogeneous(J)) {
+    write_mixed(at, moving, answer);
     return;
   }
-  const Dexterity figures = dexterity(at.J);
+  const Dexterity figures = dexterity(J);
   if (at.singularity.loses) {
     answer.undefined("condition_number", "infinite: the Jacobian is singular here");
   } else {
     answer.put("condition_number", json_number(figures.condition_number));
   }
-  answer.put("isotropy", json_number(at.singularity.loses ? 0.0 : isotropy(at.J)));
+  answer.put("isotropy", json_number(at.singularity.loses ? 0.0 : isotropy(J)));
   const double manipulability = at.singularity.loses ? 0.0 : figures.manipulability;
   answer.put("manipulability", json_number(manipulability));
   if (answer.wants("condition_number")) {
@@ -97,7 +129,7 @@ void write_dexterity(const Situation& at, Answer& answer) {
     }
   }
   if (!answer.wants("manipulability")) return;
-  const int linear = at.frame.linear();
+  const int linear = units.linear_rows;
   const bool metres = linear > 0 && units.sliding_joints == 0;
   const std::string unit = !metres       ? ""
                            : linear == 3 ? " [cm³/rad³]"
@@ -115,6 +147,7 @@ void write_ellipsoids(const Situation& at, Answer& answer) {
   Json velocity, force;
   const auto of_one_kind = [&](const char* key, const char* load, const Jacobian& rows, double factor,
                                const char* speed_unit, const char* load_unit) {
+    if (rows.isZero(0.0) && !at.J.isZero(0.0)) return;  // the legs keep the tool from it
     const char* shape = rows.rows() == 2 ? "ellipse" : "ellipsoid";
     if (rates_alike) {
       const Ellipsoid moves = velocity_ellipsoid(rows, one);

@@ -42,6 +42,18 @@ std::vector<SingularWay> ways_of(const Mechanism& mechanism, const std::vector<S
   return ways;
 }
 
+/// Makes zero the rows of J that are rounding beside the largest: a tool that is free to turn by its
+/// declaration may have legs that keep it from turning.
+void drop_idle_rows(const Frame& frame, double length, Jacobian& J) {
+  constexpr double kNothing = 1e-11;  // loops closed to 1e-12, over their condition
+  Jacobian scaled = J;
+  scaled.bottomRows(J.rows() - frame.linear()) *= length;
+  const double largest = scaled.rowwise().norm().maxCoeff();
+  for (Eigen::Index r = 0; r < J.rows(); ++r) {
+    if (scaled.row(r).norm() <= kNothing * largest) J.row(r).setZero();
+  }
+}
+
 /// Looks for singularities, and takes from J what is only rounding.
 Singularity find_singularity(const Posture& posture, bool degraded, const Rates& rates, const Frame& frame,
                              Jacobian& J) {
@@ -58,6 +70,7 @@ Singularity find_singularity(const Posture& posture, bool degraded, const Rates&
     result.hardly = ways_of(mechanism, near.lost, frame);
     result.nearly = ways_of(mechanism, near.gained, frame);
   }
+  if (!result.gains) drop_idle_rows(frame, mechanism.characteristic_length(), J);
   if (!result.loses || result.gains) return result;
   // Turning counts as the way of a point at the characteristic length.
   const double length = mechanism.characteristic_length();

@@ -6,286 +6,34 @@
 #include <numbers>
 
 #include "zwidth/mechanism/internal/arm_solver.h"
-#include "zwidth/mechanism/internal/closure.h"
 #include "zwidth/mechanism/internal/joint_values.h"
+#include "zwidth/mechanism/internal/loops.h"
 #include "zwidth/mechanism/internal/posture_builder.h"
 #include "zwidth/mechanism/posture.h"
 
 // The general solver is Newton on the loop closure, led from a start by small steps of what is asked for, so
-// that it stays on the branch (assembly mode, working mode) of the start. Two things tell of a step that left
-// it: Newton's second correction, which is small against the first one wherever the answer nearby is the only
-// one, and the sign of the closure's determinant, which the branches that meet in a singularity do not share.
+// that it stays on the branch (assembly mode, working mode) of the start.
 
 namespace zwidth {
 
+using internal::Budget;
 using internal::Closure;
 using internal::closure_column;
 using internal::closure_error;
-using internal::ClosureVector;
+using internal::damping;
 using internal::kLimitTolerance;
+using internal::kLongestStep;
+using internal::kLoose;
+using internal::kShortestStep;
+using internal::Newton;
 using internal::PostureBuilder;
+using internal::Reuse;
+using internal::scaled;
+using internal::Stagnation;
 
 namespace {
 
-constexpr double kLongestStep = 0.4;    // of what leads the way: active joints [rad, characteristic lengths]
-constexpr double kShortestStep = 1e-4;  // share of the way; a shorter step that fails ends the search
-constexpr double kLargestCorrection = 1.5;  // of a joint within one step; more is a jump to another branch
-constexpr double kLoose = 1e-5;             // closure on the way, relative to the characteristic length
-// Of Newton's second correction over the first. Next to a fold, x^2 = t, it is at most 1/2, which only a step
-// right onto the fold takes; Deuflhard 2011, chapter 5, asks for as much of a continuation.
-constexpr double kContraction = 0.55;
-constexpr double kRegular = 1e-2;   // condition of a closure that the shortest step does not bring to zero
-constexpr double kRounding = 1e-7;  // a correction [rad, characteristic lengths] below this leads nowhere else
-
-struct Newton {
-  bool converged = false;
-  double residual = -1.0;
-  int iterations = 0;
-  double contraction = 0.0;  // of the second correction against the first
-  double moved = 0.0;        // by the corrections since the closure was factored [rad, characteristic lengths]
-};
-
-struct Budget {
-  int left;
-  int used = 0;
-};
-
-// Says when Newton no longer gets nearer: near a singularity it still halves the gap, without a solution it
-// does not.
-class Stagnation {
- public:
-  bool reached(double residual) {
-    if (residual < 0.5 * best_) {
-      best_ = residual;
-      since_ = 0;
-    }
-    return ++since_ > kPatience;
-  }
-
- private:
-  static constexpr int kPatience = 12;
-  double best_ = std::numeric_limits<double>::infinity();
-  int since_ = 0;
-};
-
-// Says when the factors of the last Newton step will do for the next one too. Their step leaves of the residual
-// about twice what the last one left; if that meets the tolerance with much to spare, there is no need to
-// factor again for it.
-class Reuse {
- public:
-  bool allowed(double residual, double tolerance) {
-    constexpr double kSpare = 5.0;
-    const bool reuse = residual * residual * 2.0 * kSpare < tolerance * before_;
-    before_ = reuse ? 0.0 : residual;
-    return reuse;
-  }
-
- private:
-  double before_ = 0.0;  // the residual that the factors were made for; 0 if there are none
-};
-
-double scaled(const JointModel& joint, double change, double length) {
-  return std::abs(joint.type == JointType::prismatic ? change / length : change);
-}
-
-// Lets go of a correction that would leave the branch: all components shrink together.
-double damping(double largest) {
-  constexpr double kTrust = 0.6;
-  return largest > kTrust ? kTrust / largest : 1.0;
-}
-
 // ----------------------------------------------------------------------------------------------------- forward
-
-// Closes the loops of `posture` at its active joints by moving passive joints and platform. `closure` is left
-// as the last step had it, factored at or next to the answer.
-ZWIDTH_WIDE Newton close_loops(Posture& posture, double tolerance, int limit, Budget& budget,
-                               Closure& closure) {
-  const Mechanism& mechanism = posture.mechanism();
-  const int legs = static_cast<int>(mechanism.legs().size());
-  const double length = mechanism.characteristic_length();
-  const bool turns = mechanism.tool_turns();
-  JointVector& joints = PostureBuilder::joints(posture);
-  Pose& tool = PostureBuilder::tool(posture);
-
-  Newton newton;
-  Stagnation stagnation;
-  Reuse reuse;
-  ClosureVector error;
-  std::array<double, 6> twist;
-  JointVector change = JointVector::Zero(mechanism.joint_count());
-  double first = 0.0;
-  while (true) {
-    PostureBuilder::place_legs(posture);
-    newton.residual = 0.0;
-    for (int l = 0; l < legs; ++l) {
-      const int rows = closure_error(posture, l, error[l]);
-      for (int i = 0; i < rows; ++i) newton.residual = std::max(newton.residual, std::abs(error[l][i]));
-    }
-    newton.converged = newton.residual <= tolerance;
-    if (newton.converged || newton.iterations >= limit || budget.left <= 0 ||
-        stagnation.reached(newton.residual))
-      return newton;
-    ++newton.iterations;
-    --budget.left;
-    ++budget.used;
-
-    if (!reuse.allowed(newton.residual, tolerance)) {
-      closure.factor(posture);
-      newton.moved = 0.0;
-    }
-    closure.solve(error, twist, [&change](int j, double correction) { change[j] = correction; });
-    double largest = 0.0;
-    for (int j = 0; j < mechanism.joint_count(); ++j) {
-      largest = std::max(largest, scaled(mechanism.joints()[j], change[j], length));
-    }
-    const double share = damping(largest);
-    newton.moved += share * largest;
-    if (newton.iterations == 1) first = largest;
-    if (newton.iterations == 2 && first > kRounding) newton.contraction = largest / first;
-    joints += share * change;
-    Vector3 turn = Vector3::Zero();
-    const std::span<const int> axes = mechanism.tool_axes();
-    for (std::size_t r = 0; r < axes.size(); ++r) {
-      (axes[r] < 3 ? tool.position[axes[r]] : turn[axes[r] - 3]) += share * twist[r];
-    }
-    if (turns) {
-      tool.rotation = internal::orthonormal(internal::turned_by(turn, tool.rotation));
-    }
-  }
-}
-
-bool jumped(const Posture& posture, const JointVector& before) {
-  const Mechanism& mechanism = posture.mechanism();
-  for (int j = 0; j < mechanism.joint_count(); ++j) {
-    if (scaled(mechanism.joints()[j], posture.joints()[j] - before[j], mechanism.characteristic_length()) >
-        kLargestCorrection) {
-      return true;
-    }
-  }
-  return false;
-}
-
-// Whether a step from `before` led past a direct singularity. `closure` is that of the last step of Newton, and
-// is brought to the answer where it may differ.
-bool crossed(const Posture& posture, const JointVector& before, const Pose& tool_before, const Newton& newton,
-             Closure& closure) {
-  constexpr double kSure = 0.1;  // of the closure's condition: less way cannot bring it to zero
-  const Mechanism& mechanism = posture.mechanism();
-  if (newton.iterations == 0 || newton.moved > kSure * closure.direct_condition()) closure.factor(posture);
-  double way = 0.0;
-  for (int j = 0; j < mechanism.joint_count(); ++j) {
-    way = std::max(
-        way, scaled(mechanism.joints()[j], posture.joints()[j] - before[j], mechanism.characteristic_length()));
-  }
-  if (way <= kSure * closure.direct_condition() || closure.direct_condition() <= Closure::kSingular)
-    return false;
-  Posture earlier = PostureBuilder::unplaced(posture);
-  PostureBuilder::joints(earlier) = before;
-  PostureBuilder::tool(earlier) = tool_before;
-  PostureBuilder::place_legs(earlier);
-  return closure.sign_against(Closure(earlier)) < 0;
-}
-
-// A posture at the home guess, loops not yet closed: the platform where the legs' tips say on average.
-Posture at_home_guess(const Mechanism& mechanism) {
-  Posture posture = PostureBuilder::open(mechanism);
-  PostureBuilder::joints(posture) = mechanism.home_guess();
-  PostureBuilder::place_legs(posture);
-  Pose& tool = PostureBuilder::tool(posture);
-  const int legs = static_cast<int>(mechanism.legs().size());
-  for (int l = 0; l < legs && mechanism.tool_turns(); ++l) {
-    if (mechanism.legs()[l].attachment == Attachment::rigid) {
-      tool.rotation = posture.leg_tip_rotation(l);
-      break;
-    }
-  }
-  for (int l = 0; l < legs; ++l) {
-    tool.position += (posture.leg_tip(l) - tool.rotation * mechanism.legs()[l].platform_point) / legs;
-  }
-  return posture;
-}
-
-// Leads `posture`, closed at its active joints, to other ones without passing a singularity. On failure it is
-// left where it failed.
-Newton lead_active(Posture& posture, const ActiveVector& target, double tolerance, Budget& budget,
-                   Closure& closure) {
-  const Mechanism& mechanism = posture.mechanism();
-  const double length = mechanism.characteristic_length();
-  JointVector& joints = PostureBuilder::joints(posture);
-  const ActiveVector from = posture.active();
-  double way = 0.0;
-  for (int i = 0; i < mechanism.active_count(); ++i) {
-    way = std::max(way, scaled(mechanism.joints()[mechanism.active_joint(i)], target[i] - from[i], length));
-  }
-  const double longest = 1.0 / std::max(1.0, std::ceil(way / kLongestStep));
-  double step = longest, done = 0.0;
-  Newton newton;
-  while (done < 1.0) {
-    const double next = done + step > 1.0 - 1e-9 ? 1.0 : done + step;
-    const bool last = next == 1.0;
-    const JointVector before = joints;
-    const Pose tool_before = posture.tool();
-    for (int i = 0; i < mechanism.active_count(); ++i) {
-      joints[mechanism.active_joint(i)] = last ? target[i] : from[i] + next * (target[i] - from[i]);
-    }
-    newton = close_loops(posture, last ? tolerance * length : kLoose * length, last ? 40 : 12, budget, closure);
-    if (newton.converged && newton.contraction <= kContraction && !jumped(posture, before)) {
-      // What only passive joints of a leg are singular in, as a universal joint may be, the platform passes.
-      const bool platform_passes = 0.5 * step < kShortestStep && closure.reciprocal_condition() > kRegular;
-      if (!crossed(posture, before, tool_before, newton, closure) || platform_passes) {
-        done = next;
-        step = std::min(longest, 2.0 * step);
-        continue;
-      }
-    }
-    newton.converged = false;
-    step *= 0.5;
-    if (step < kShortestStep || budget.left <= 0) return newton;
-    joints = before;
-    PostureBuilder::tool(posture) = tool_before;
-  }
-  return newton;
-}
-
-// Leads `posture`, closed at its active joints, to other ones by a way that goes round the other side with some
-// of them: all by the shorter way, or one of them the other way than straight. Only joints whose range is a
-// whole turn may. On failure `posture` is left where it failed.
-Newton lead_round(Posture& posture, const ActiveVector& target, double tolerance, int limit, Budget& budget,
-                  Closure& closure) {
-  const Mechanism& mechanism = posture.mechanism();
-  const Posture from = posture;
-  const ActiveVector here = from.active();
-  Newton newton;
-  const auto lead = [&](const ActiveVector& turned) {
-    posture = from;
-    budget.left = limit;
-    newton = lead_active(posture, turned, tolerance, budget, closure);
-    if (!newton.converged) return false;
-    // The same angles, as they are called.
-    for (int i = 0; i < mechanism.active_count(); ++i)
-      PostureBuilder::joints(posture)[mechanism.active_joint(i)] = target[i];
-    newton = close_loops(posture, tolerance * mechanism.characteristic_length(), 10, budget, closure);
-    return newton.converged;
-  };
-  const auto goes_round = [&](int i) {
-    const JointModel& joint = mechanism.joints()[mechanism.active_joint(i)];
-    return joint.type == JointType::revolute && internal::goes_round(joint.range);
-  };
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  ActiveVector shorter = target;
-  for (int i = 0; i < mechanism.active_count(); ++i) {
-    if (goes_round(i)) shorter[i] = here[i] + std::remainder(target[i] - here[i], kTurn);
-  }
-  if ((shorter - target).cwiseAbs().maxCoeff() > 1.0 && lead(shorter)) return newton;
-  for (int i = 0; i < mechanism.active_count(); ++i) {
-    if (!goes_round(i)) continue;
-    ActiveVector other = shorter;
-    other[i] += shorter[i] > here[i] ? -kTurn : kTurn;
-    if (lead(other)) return newton;
-  }
-  newton.converged = false;
-  return newton;
-}
 
 // Wraps the passive angles, then says what the posture is worth, given its closure.
 void judge(Solution& solution, const Closure& closure) {
@@ -308,18 +56,6 @@ void judge(Solution& solution, const Closure& closure) {
   }
 }
 
-// Whether the loops close at joint values that could not be led to: beyond a singularity, that is. `posture` is
-// where leading failed.
-bool closes_elsewhere(Posture& posture, const ActiveVector& active, double tolerance) {
-  const Mechanism& mechanism = posture.mechanism();
-  for (int i = 0; i < mechanism.active_count(); ++i)
-    PostureBuilder::joints(posture)[mechanism.active_joint(i)] = active[i];
-  constexpr int kSteps = 60;
-  Budget budget{kSteps};
-  Closure closure;
-  return close_loops(posture, tolerance * mechanism.characteristic_length(), kSteps, budget, closure).converged;
-}
-
 Solution forward_general(const Mechanism& mechanism, const ActiveVector& active, const SolveOptions& options) {
   const double length = mechanism.characteristic_length();
   Budget budget{options.max_iterations};
@@ -328,12 +64,12 @@ Solution forward_general(const Mechanism& mechanism, const ActiveVector& active,
   Newton newton;
   if (options.start != nullptr) {
     solution.posture = PostureBuilder::unplaced(*options.start);
-    newton = lead_active(*solution.posture, active, options.tolerance, budget, closure);
+    newton = internal::lead_active(*solution.posture, active, options.tolerance, budget, closure);
   }
   if (!newton.converged && (options.start == nullptr || options.restart)) {  // from home there may be a way
-    solution.posture = at_home_guess(mechanism);
+    solution.posture = internal::at_home_guess(mechanism);
     budget.left = std::max(budget.left, options.max_iterations / 2);
-    newton = close_loops(*solution.posture, kLoose * length, 40, budget, closure);
+    newton = internal::close_loops(*solution.posture, kLoose * length, 40, budget, closure);
     if (newton.converged) {
       closure.factor(*solution.posture);
       // A start on another branch has none of home's answers.
@@ -341,11 +77,12 @@ Solution forward_general(const Mechanism& mechanism, const ActiveVector& active,
     }
     if (newton.converged) {
       const Posture home = *solution.posture;
-      newton = lead_active(*solution.posture, active, options.tolerance, budget, closure);
+      newton = internal::lead_active(*solution.posture, active, options.tolerance, budget, closure);
       if (!newton.converged && options.restart) {
         const Newton straight = newton;
         Posture round = home;
-        newton = lead_round(round, active, options.tolerance, options.max_iterations, budget, closure);
+        newton =
+            internal::lead_round(round, active, options.tolerance, options.max_iterations, budget, closure);
         if (newton.converged) {
           solution.posture = round;
         } else {
@@ -358,7 +95,7 @@ Solution forward_general(const Mechanism& mechanism, const ActiveVector& active,
   solution.residual = newton.residual;
   if (!newton.converged) {
     if (options.restart)
-      solution.other_assembly = closes_elsewhere(*solution.posture, active, options.tolerance);
+      solution.other_assembly = internal::closes_elsewhere(*solution.posture, active, options.tolerance);
     solution.posture.reset();
     return solution;
   }
@@ -446,7 +183,7 @@ Newton lead_leg(Posture& posture, int l, const Pose& from, const Pose& to, doubl
     const JointVector before = joints;
     tool = last ? to : between(from, to, next);
     newton = reach(posture, l, last ? tolerance * length : kLoose * length, last ? 60 : 12, budget);
-    if (newton.converged && !jumped(posture, before)) {
+    if (newton.converged && !internal::jumped(posture, before)) {
       done = next;
       continue;
     }
@@ -562,10 +299,10 @@ Solution inverse_general(const Mechanism& mechanism, const Pose& tool, const Sol
   Budget budget{options.max_iterations};
   Closure closure;
   Solution solution;
-  solution.posture = options.start != nullptr ? *options.start : at_home_guess(mechanism);
+  solution.posture = options.start != nullptr ? *options.start : internal::at_home_guess(mechanism);
   Posture& posture = *solution.posture;
   if (options.start == nullptr) {
-    const Newton home = close_loops(posture, kLoose * length, 40, budget, closure);
+    const Newton home = internal::close_loops(posture, kLoose * length, 40, budget, closure);
     if (!home.converged) {
       solution.residual = home.residual;
       solution.posture.reset();
@@ -776,7 +513,7 @@ std::vector<Solution> solve_inverse_all(const Mechanism& mechanism, const Pose& 
     }
   } else {
     constexpr std::size_t kMostSolutions = 256;
-    Posture posture = options.start != nullptr ? *options.start : at_home_guess(mechanism);
+    Posture posture = options.start != nullptr ? *options.start : internal::at_home_guess(mechanism);
     PostureBuilder::tool(posture) = wanted;
     std::vector<Posture> postures = {posture};
     for (int l = 0; l < static_cast<int>(mechanism.legs().size()); ++l) {

@@ -356,7 +356,7 @@ std::string quantity(double value, double factor, std::string_view unit, int dig
                       : fmt::format("{} {}", number(value * factor, digits), unit);
 }
 
-std::string readable(double value, std::string_view si_unit, int digits) {
+ReadableUnit readable_unit(double magnitude, std::string_view si_unit) {
   struct Scale {
     std::string_view si;
     double from;  // smallest magnitude that this unit suits
@@ -401,15 +401,19 @@ std::string readable(double value, std::string_view si_unit, int digits) {
                                       {"m^2", 0.0, 1e6, "mm²"},
                                       {"m^3/rad^3", 0.0, 1e6, "cm³/rad³"},
                                       {"m/rad", 0.0, 1e3, "mm/rad"}};
-  if (std::isnan(value)) return "not given";
   for (const Scale& scale : kScales) {
-    if (scale.si != si_unit || (value != 0.0 && std::abs(value) < scale.from)) continue;
-    const std::string text = number(value * scale.factor, digits);
-    return scale.text == "°" || scale.text == "″" ? text + std::string(scale.text)
-                                                  : fmt::format("{} {}", text, scale.text);
+    if (scale.si != si_unit || (magnitude != 0.0 && std::abs(magnitude) < scale.from)) continue;
+    return {scale.factor, std::string(scale.text)};
   }
-  return si_unit.empty() || si_unit == "1" ? number(value, digits)
-                                           : fmt::format("{} {}", number(value, digits), si_unit);
+  return {1.0, si_unit == "1" ? "" : std::string(si_unit)};
+}
+
+std::string readable(double value, std::string_view si_unit, int digits) {
+  if (std::isnan(value)) return "not given";
+  const ReadableUnit unit = readable_unit(value, si_unit);
+  const std::string text = number(value * unit.factor, digits);
+  if (unit.text == "°" || unit.text == "″") return text + unit.text;
+  return unit.text.empty() ? text : fmt::format("{} {}", text, unit.text);
 }
 
 std::string interval(double min, double max, double factor, std::string_view unit, int digits) {

@@ -99,6 +99,13 @@ std::string plane_point_text(const Vector3& position);
 /// "min … max unit".
 std::string interval(double min, double max, double factor, std::string_view unit, int digits = 4);
 
+/// The unit in which people read numbers of a size, and what SI values are multiplied with for it.
+struct ReadableUnit {
+  double factor = 1.0;
+  std::string text;  ///< may be empty
+};
+ReadableUnit readable_unit(double magnitude, std::string_view si_unit);
+
 /// An SI value in the unit that people use for its size: 0.0612, "m" gives "61.2 mm".
 std::string readable(double value, std::string_view si_unit, int digits = 4);
 

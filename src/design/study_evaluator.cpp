@@ -482,6 +482,7 @@ DesignSheet StudyEvaluator::sheet(std::span<const double> design, std::span<cons
     } else {
       value.dimension = variable.dimension.value_or(Dimension::number);
     }
+    value.unit = plan.units[plan.variable_value[v]];
     sheet.variables.push_back(std::move(value));
   }
   for (std::size_t g = 0; g < plan.groups.size(); ++g) s.take(g);
@@ -490,6 +491,8 @@ DesignSheet StudyEvaluator::sheet(std::span<const double> design, std::span<cons
     s.prepare(plan.constraint_use[c]);
     sheet.constraints.push_back(s.constraints[c]());
     sheet.violations.push_back(s.violation(c, sheet.constraints.back()));
+    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+    sheet.limits.push_back({s.low[c] ? (*s.low[c])() : -kNoLimit, s.high[c] ? (*s.high[c])() : kNoLimit});
     holds = holds && sheet.violations.back() == 0.0;
   }
   for (std::size_t o = 0; o < plan.study.objectives.size(); ++o) {
@@ -502,10 +505,13 @@ DesignSheet StudyEvaluator::sheet(std::span<const double> design, std::span<cons
     const std::string name = one.name.empty() ? one.keys.front() : one.name;
     DesignValue value{.name = name, .value = s.values[plan.derived_value[d]]};
     if (!s.derived_slots[d].empty()) value.dimension = s.derived_slots[d].front().dimension;
+    value.unit = plan.units[plan.derived_value[d]];
     sheet.derived.push_back(std::move(value));
   }
   for (std::size_t m = 0; m < plan.study.measures.size(); ++m) {
-    sheet.derived.push_back({.name = plan.study.measures[m].name, .value = s.values[plan.measure_value[m]]});
+    sheet.derived.push_back({.name = plan.study.measures[m].name,
+                             .value = s.values[plan.measure_value[m]],
+                             .unit = plan.units[plan.measure_value[m]]});
   }
   sheet.feasible = holds;
   if (!tolerance.empty()) s.restore_tolerances();

@@ -714,6 +714,13 @@ const Description& StudyModel::device() const {
   return plan_->device;
 }
 
+const std::vector<std::string>& StudyModel::objective_units() const {
+  return plan_->objective_units;
+}
+const std::vector<std::string>& StudyModel::constraint_units() const {
+  return plan_->constraint_units;
+}
+
 namespace {
 
 // How many values a stepped variable has, less one.
@@ -760,6 +767,32 @@ std::vector<double> StudyModel::device_design() const {
     design.push_back(variable.integer ? std::round(value) : value);
   }
   return design;
+}
+
+bool StudyModel::starts_at_device() const {
+  const std::vector<double> design = device_design();
+  Description device = plan_->device;
+  for (std::size_t v = 0; v < design.size(); ++v) {
+    const StudyVariable& variable = study().variables[v];
+    if (variable.keys.empty()) return false;
+    if (!variable.parts.empty()) {
+      const auto part = static_cast<std::size_t>(std::lround(design[v]));
+      for (const std::string& key : variable.keys) {
+        for (const PartSlot& slot : find_parts(device, key)) {
+          if (slot.name() != variable.parts[part]) return false;
+        }
+      }
+      continue;
+    }
+    constexpr double kRounding = 1e-9;
+    const double value = internal::value_of(variable, design[v]);
+    for (const std::string& key : variable.keys) {
+      for (const NumberSlot& slot : find_numbers(device, key)) {
+        if (std::abs(slot.get() - value) > kRounding * std::abs(value)) return false;
+      }
+    }
+  }
+  return true;
 }
 
 }  // namespace zwidth

@@ -26,6 +26,7 @@ struct DesignValue {
   double value = 0.0;  ///< SI; index of the part
   std::string part;    ///< name of the part; empty for a number
   Dimension dimension = Dimension::number;
+  std::string unit;  ///< SI; empty where it depends on the device
 };
 
 /// Why a design is not defined as the study asks: a rule of device files, an expression, or a figure.
@@ -45,6 +46,7 @@ struct DesignSheet {
   std::vector<DesignValue> derived;  ///< with names, and the measures; NaN where undefined
   std::vector<double> objectives;    ///< as the study has them, not negated; NaN where undefined
   std::vector<double> constraints;   ///< values; NaN where undefined
+  std::vector<Interval> limits;      ///< of the constraints; infinite where there is none
   std::vector<double> violations;    ///< 0 where a constraint holds, NaN where it is undefined
   bool feasible = false;
 };
@@ -69,9 +71,15 @@ class StudyModel {
   /// all that is asked of it is defined.
   SearchProblem search_problem() const;
 
+  /// SI units of objectives and constraints, for people; empty where they cannot be told.
+  const std::vector<std::string>& objective_units() const;
+  const std::vector<std::string>& constraint_units() const;
+
   /// How close the device itself comes to a design: each variable's value in its file, within the bounds; the
   /// middle where it has none.
   std::vector<double> device_design() const;
+  /// Whether that is the device as its file has it: no variable had to be moved, and each has a key.
+  bool starts_at_device() const;
 
   struct Plan;
   const Plan& plan() const { return *plan_; }

@@ -1,4 +1,6 @@
+#include <cmath>
 #include <filesystem>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -50,6 +52,52 @@ TEST(Optimise, WritesADeviceThatReportReads) {
   EXPECT_EQ(checked.status, 0) << checked.err;
   const std::string device = read_text(folder + "/chosen.toml");
   EXPECT_NE(device.find("chosen: by the study even"), std::string::npos);
+}
+
+// Slopes and steps of every figure against the study asked again at designs nearby.
+TEST(Optimise, SaysWhatEachVariableDoesToEachFigure) {
+  const ScratchDirectory scratch;
+  std::string text = even_study(4);
+  text +=
+      "[[variable]]\nname = \"base\"\nkey = \"mechanism.half_base\"\nmin = \"2 cm\"\nmax = \"4 cm\"\nstep = "
+      "\"1 cm\"\n";
+  const Outcome outcome =
+      run({"optimise", scratch.file("even.toml", text), "-o", (scratch.path() / "out").string(), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto chosen = outcome.json().at("chosen");
+  const double crank = chosen["variables"]["crank"], coupler = chosen["variables"]["coupler"],
+               base = chosen["variables"]["base"];
+  EXPECT_NEAR(chosen["slopes"]["crank"]["length"].get<double>(), 1.0, 1e-9);
+  EXPECT_EQ(chosen["slopes"]["crank"]["well conditioned"], chosen["slopes"]["crank"]["worst"]);
+  EXPECT_NEAR(chosen["margins"]["well conditioned"].get<double>(),
+              5.0 - chosen["objectives"]["worst"].get<double>(), 1e-12);
+  // The largest condition number of a lattice over the same square, by another verb.
+  const auto worst = [&](double a, double b, double c) {
+    double most = 0.0;
+    for (const double x : {-0.03, 0.0, 0.03}) {
+      for (const double y : {0.12, 0.15, 0.18}) {
+        const Outcome at =
+            run({"at", "five-bar", "--set", fmt::format("mechanism.crank={}", a), "--set",
+                 fmt::format("mechanism.coupler={}", b), "--set", fmt::format("mechanism.half_base={}", c),
+                 fmt::format("--position={},{}", x, y), "--only", "condition_number", "--json"});
+        most = std::max(most, at.json().at("condition_number").get<double>());
+      }
+    }
+    return most;
+  };
+  EXPECT_NEAR(worst(crank, coupler, base), chosen["objectives"]["worst"].get<double>(), 1e-9);
+  const double slope = chosen["slopes"]["crank"]["worst"];
+  constexpr double kStep = 1e-5;
+  EXPECT_NEAR((worst(crank + kStep, coupler, base) - worst(crank - kStep, coupler, base)) / (2 * kStep), slope,
+              1e-3 * std::abs(slope));
+  const auto& steps = chosen["steps"]["base"];
+  for (const auto& [way, sign] : {std::pair("down", -1.0), std::pair("up", 1.0)}) {
+    if (steps[way].is_null()) continue;
+    EXPECT_NEAR(steps[way]["figures"]["worst"].get<double>(), worst(crank, coupler, base + sign * 0.01), 1e-9)
+        << way;
+  }
+  EXPECT_FALSE(steps["down"].is_null() && steps["up"].is_null());
+  EXPECT_EQ(outcome.json()["objectives"][1]["unit"], "m");
 }
 
 TEST(Optimise, PlacesMistakesAboutTheDeviceInTheStudy) {

@@ -67,6 +67,7 @@ TEST(JsonKeys, AreAllDocumented) {
       {"optimise five-bar-grid -o " ZWIDTH_REPORT "/optimise",
        {"pareto.variables", "pareto.objectives", "pareto.constraints", "pareto.derived", "chosen.variables",
         "chosen.objectives", "chosen.constraints", "chosen.derived", "chosen.slopes", "chosen.slopes.*",
+        "chosen.steps", "chosen.steps.*.up.figures", "chosen.steps.*.down.figures", "chosen.margins",
         "chosen.tolerances.objectives"}},
       {"figures", {}},
       {"devices", {}},

@@ -114,31 +114,65 @@ BatchEvaluation spread_out(
                     {.threads = threads, .cancel = &stop_on_interrupt()});
 }
 
-void find_slopes(StudyOutcome& outcome, const StudyModel& model, int threads) {
+/// What small changes, or one step, of each variable do to every figure of the chosen design.
+void find_sensitivity(StudyOutcome& outcome, const StudyModel& model, int threads) {
   const std::span<const double> chosen = outcome.design(*outcome.chosen);
-  ChosenSlopes found;
-  std::vector<double> at, steps;
-  for (std::size_t v = 0; v < outcome.problem.variables.size(); ++v) {
-    const SearchVariable& variable = outcome.problem.variables[v];
-    if (variable.integer || !(variable.max > variable.min)) continue;
-    constexpr double kStep = 1e-5;  // of the range: differences of smooth figures to some ten digits
-    found.variables.push_back(v);
-    at.push_back(chosen[v]);
-    steps.push_back(kStep * (variable.max - variable.min));
-  }
-  if (at.empty()) return;
   const std::vector<double> design(chosen.begin(), chosen.end());
-  const std::size_t objectives = outcome.problem.objectives.size();
-  const BatchEvaluation evaluate =
-      spread_out(model, at.size(), objectives, threads,
-                 [&](StudyEvaluator& evaluator, std::span<const double> row, std::span<double> result) {
-                   std::vector<double> moved = design;
-                   for (std::size_t i = 0; i < row.size(); ++i) moved[found.variables[i]] = row[i];
-                   const DesignSheet sheet = evaluator.sheet(moved);
-                   std::copy(sheet.objectives.begin(), sheet.objectives.end(), result.begin());
-                 });
-  found.slopes = sensitivity(evaluate, at, steps, objectives);
-  if (found.slopes.complete) outcome.slopes = std::move(found);
+  const Study& study = model.study();
+  ChosenSensitivity found;
+  found.figures = outcome_figures(model);
+  const DesignSheet& sheet = outcome.front[*outcome.chosen];
+  found.values = figure_values(sheet, study);
+  found.margins = margins_of(sheet);
+  std::vector<double> at, steps;
+  StudyEvaluator evaluator(model);
+  for (std::size_t v = 0; v < design.size(); ++v) {
+    const SearchVariable& variable = outcome.problem.variables[v];
+    if (!(variable.max > variable.min)) continue;
+    if (!variable.integer) {
+      constexpr double kStep = 1e-5;  // of the range: differences of smooth figures to some ten digits
+      found.smooth.push_back(v);
+      at.push_back(design[v]);
+      steps.push_back(kStep * (variable.max - variable.min));
+      continue;
+    }
+    ChosenSensitivity::Step step{.variable = v};
+    for (const bool up : {false, true}) {
+      std::vector<double> moved = design;
+      moved[v] += up ? 1.0 : -1.0;
+      const auto side = static_cast<std::size_t>(up);
+      step.figures[side].assign(found.figures.size(), std::nan(""));
+      if (moved[v] < variable.min || moved[v] > variable.max) continue;
+      const DesignSheet there = evaluator.sheet(moved);
+      step.value[side] = value_text(there.variables[v]);
+      step.figures[side] = figure_values(there, study);
+      step.feasible[side] = there.feasible;
+    }
+    found.steps.push_back(std::move(step));
+  }
+  if (!at.empty()) {
+    const std::size_t outcomes = found.figures.size() + found.margins.size();
+    const BatchEvaluation evaluate = spread_out(
+        model, at.size(), outcomes, threads,
+        [&](StudyEvaluator& one, std::span<const double> row, std::span<double> result) {
+          std::vector<double> moved = design;
+          for (std::size_t i = 0; i < row.size(); ++i) moved[found.smooth[i]] = row[i];
+          const DesignSheet there = one.sheet(moved);
+          const std::vector<double> values = figure_values(there, study), margins = margins_of(there);
+          std::copy(margins.begin(), margins.end(), std::copy(values.begin(), values.end(), result.begin()));
+        });
+    found.slopes = sensitivity(evaluate, at, steps, outcomes);
+    if (!found.slopes.complete) return;
+  }
+  outcome.sensitivity = std::move(found);
+}
+
+/// The device as it is beside what was found.
+void find_start(StudyOutcome& outcome, const StudyModel& model) {
+  StudyEvaluator evaluator(model);
+  outcome.start = evaluator.sheet(model.device_design());
+  // Variables without a key are nobody's before the search.
+  outcome.start_moved = !model.starts_at_device();
 }
 
 void try_tolerances(StudyOutcome& outcome, const StudyModel& model, int threads, std::int64_t samples) {
@@ -328,7 +362,8 @@ int optimise(OptimiseArguments arguments, const Terminal& terminal) {
   outcome.problem.evaluate = nullptr;
   ranks.reset();  // the others go home
   if (outcome.chosen && !stop_on_interrupt()) {
-    find_slopes(outcome, *model, arguments.threads);
+    find_start(outcome, *model);
+    find_sensitivity(outcome, *model, arguments.threads);
     try_tolerances(outcome, *model, arguments.threads, arguments.samples);
   }
   find_obstacles(outcome, *model);

@@ -37,8 +37,98 @@ std::string value_text(const DesignValue& value) {
   if (!value.part.empty()) return value.part;
   if (std::isnan(value.value)) return "undefined";
   if (value.dimension == Dimension::angle) return quantity(value.value, kDegrees, "deg");
-  if (value.dimension == Dimension::number) return trimmed(value.value, 6);
-  return readable(value.value, si_unit(value.dimension));
+  const std::string unit = value.unit.empty() ? std::string(si_unit(value.dimension)) : value.unit;
+  return unit == "1" ? trimmed(value.value, 6) : readable(value.value, unit);
+}
+
+std::string amount(double value, const std::string& unit) {
+  return std::isnan(value) ? "undefined" : readable(value, unit);
+}
+
+namespace {
+
+// The outermost function is a logarithm: what stands before it was multiplied shows as a difference.
+bool is_logarithm(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" -(");
+  return first != text.npos && (text.compare(first, 4, "log(") == 0 || text.compare(first, 6, "log10(") == 0);
+}
+
+}  // namespace
+
+std::vector<OutcomeFigure> outcome_figures(const StudyModel& model) {
+  const Study& study = model.study();
+  std::vector<OutcomeFigure> list;
+  using Kind = OutcomeFigure::Kind;
+  for (std::size_t o = 0; o < study.objectives.size(); ++o) {
+    list.push_back({study.objectives[o].name, model.objective_units()[o], Kind::objective,
+                    is_logarithm(study.objectives[o].value)});
+  }
+  for (std::size_t c = 0; c < study.constraints.size(); ++c) {
+    list.push_back({study.constraints[c].name, model.constraint_units()[c], Kind::constraint,
+                    is_logarithm(study.constraints[c].value)});
+  }
+  for (const StudyDerived& one : study.derived) {
+    if (!one.name.empty()) list.push_back({one.name, "", Kind::further, is_logarithm(one.value)});
+  }
+  for (const StudyMeasure& one : study.measures) list.push_back({one.name, "", Kind::further, false});
+  // Units of the last ones come with their values.
+  const DesignSheet sheet = StudyEvaluator(model).sheet(model.device_design());
+  for (OutcomeFigure& figure : list) {
+    for (const DesignValue& one : sheet.derived) {
+      if (figure.kind == Kind::further && one.name == figure.name) figure.unit = one.unit;
+    }
+  }
+  return list;
+}
+
+std::vector<double> figure_values(const DesignSheet& sheet, const Study& study) {
+  std::vector<double> values = sheet.objectives;
+  values.insert(values.end(), sheet.constraints.begin(), sheet.constraints.end());
+  for (std::size_t d = 0; d < study.derived.size(); ++d) {
+    if (!study.derived[d].name.empty()) values.push_back(sheet.derived[d].value);
+  }
+  for (std::size_t m = 0; m < study.measures.size(); ++m) {
+    values.push_back(sheet.derived[study.derived.size() + m].value);
+  }
+  return values;
+}
+
+std::vector<double> margins_of(const DesignSheet& sheet) {
+  std::vector<double> margins;
+  for (std::size_t c = 0; c < sheet.constraints.size(); ++c) {
+    const double value = sheet.constraints[c];
+    margins.push_back(std::isnan(value) ? value
+                                        : std::min(value - sheet.limits[c].min, sheet.limits[c].max - value));
+  }
+  return margins;
+}
+
+bool ChosenSensitivity::slides(std::size_t figure) const {
+  for (std::size_t i = 0; i < smooth.size(); ++i) {
+    if (slopes.slope[figure * smooth.size() + i] != 0.0) return true;
+  }
+  return false;
+}
+
+bool ChosenSensitivity::moves(std::size_t figure) const {
+  return slides(figure) || std::any_of(steps.begin(), steps.end(), [&](const Step& step) {
+           return std::any_of(step.figures.begin(), step.figures.end(), [&](const std::vector<double>& there) {
+             return there[figure] != values[figure] && !std::isnan(there[figure]);
+           });
+         });
+}
+
+bool ChosenSensitivity::same(std::size_t a, std::size_t b) const {
+  if (values[a] != values[b]) return false;
+  for (std::size_t i = 0; i < smooth.size(); ++i) {
+    if (slopes.slope[a * smooth.size() + i] != slopes.slope[b * smooth.size() + i]) return false;
+  }
+  return true;
+}
+
+double ChosenSensitivity::change(std::size_t figure, std::size_t i, const SearchProblem& problem) const {
+  const SearchVariable& variable = problem.variables[smooth[i]];
+  return slopes.slope[figure * smooth.size() + i] * kPart * (variable.max - variable.min);
 }
 
 namespace {
@@ -88,16 +178,6 @@ Json tolerances_json(const ToleranceStudy& tolerances, const Study& study) {
   return entry;
 }
 
-/// Relative change of an objective per relative change of a variable, at the chosen design.
-std::optional<double> elasticity(const StudyOutcome& outcome, std::size_t objective, std::size_t i) {
-  const ChosenSlopes& found = *outcome.slopes;
-  const double slope = found.slopes.slope[objective * found.variables.size() + i];
-  const double value = outcome.front[*outcome.chosen].objectives[objective];
-  const double at = outcome.design(*outcome.chosen)[found.variables[i]];
-  const double result = slope * at / value;
-  return std::isfinite(result) ? std::optional(result) : std::nullopt;
-}
-
 std::string never_met(const StudyOutcome& outcome) {
   std::string text;
   for (std::size_t c = 0; c < outcome.problem.constraints.size(); ++c) {
@@ -113,6 +193,145 @@ std::string never_met(const StudyOutcome& outcome) {
                 : ", and never defined\n";
   }
   return text;
+}
+
+}  // namespace
+
+std::string change_text(double before, double after, bool logarithm) {
+  if (std::isnan(after)) return "–";
+  const double change = after - before;
+  if (logarithm || before == 0.0) return change == 0.0 ? "0" : fmt::format("{:+.3g}", change);
+  const double percent = 100.0 * change / std::abs(before);
+  return std::abs(percent) < 0.005 ? "0 %"
+                                   : fmt::format("{:+.{}f} %", percent, std::abs(percent) < 1.0 ? 2 : 1);
+}
+
+std::vector<ConstraintActivity> constraint_activity(const StudyOutcome& outcome, const StudyModel& model) {
+  const Study& study = model.study();
+  const DesignSheet& chosen = outcome.front[*outcome.chosen];
+  const std::vector<double> margins = margins_of(chosen);
+  std::vector<ConstraintActivity> list;
+  for (std::size_t c = 0; c < study.constraints.size(); ++c) {
+    ConstraintActivity one{.name = study.constraints[c].name};
+    const std::string& unit = model.constraint_units()[c];
+    const double value = chosen.constraints[c];
+    const Interval& limits = chosen.limits[c];
+    one.value = amount(value, unit);
+    const std::string low =
+        std::isfinite(limits.min) ? fmt::format("at least {}", amount(limits.min, unit)) : "";
+    const std::string high =
+        std::isfinite(limits.max) ? fmt::format("at most {}", amount(limits.max, unit)) : "";
+    one.limit = fmt::format("{}{}{}", low, low.empty() || high.empty() ? "" : ", ", high);
+    const double nearest = value - limits.min < limits.max - value ? limits.min : limits.max;
+    constexpr double kActive = 0.005;  // of the limit
+    const double size = std::max(std::abs(nearest), nearest == 0.0 ? study.constraints[c].scale : 0.0);
+    one.share = margins[c] / size;
+    one.active = one.share <= kActive;
+    one.margin = amount(margins[c], unit);
+    if (nearest != 0.0) one.margin += fmt::format(" ({:.3g} %)", 100.0 * one.share);
+    // Which variable alone uses up the margin first, as far as a straight line tells.
+    double soonest = 1.0;
+    const auto& found = outcome.sensitivity;
+    for (std::size_t i = 0; found && i < found->smooth.size(); ++i) {
+      const SearchVariable& variable = outcome.problem.variables[found->smooth[i]];
+      const double slope = found->slopes.slope[(found->figures.size() + c) * found->smooth.size() + i];
+      const double step = -margins[c] / slope, range = variable.max - variable.min;
+      if (!std::isfinite(step) || std::abs(step) >= soonest * range) continue;
+      soonest = std::abs(step) / range;
+      DesignValue moved = chosen.variables[found->smooth[i]];
+      moved.value = std::abs(step);
+      one.broken_by = fmt::format("{} {}{}", variable.name, step < 0.0 ? "−" : "+", value_text(moved));
+    }
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+namespace {
+
+void write_sensitivity(const StudyOutcome& outcome, const StudyModel& model, Sheet& sheet) {
+  const ChosenSensitivity& found = *outcome.sensitivity;
+  const Study& study = model.study();
+  sheet.heading("Sensitivity");
+  const std::vector<ConstraintActivity> activity = constraint_activity(outcome, model);
+  if (!activity.empty()) {
+    std::vector<std::vector<std::string>> rows;
+    for (const ConstraintActivity& one : activity) {
+      rows.push_back({one.name, one.value, one.limit, one.active ? "at its limit" : one.margin, one.broken_by});
+    }
+    sheet.table({"constraint", "value", "limit", "to spare", "used up first by"}, rows);
+    sheet.gap();
+  }
+  // What nothing moves, and what another line says already, is left out.
+  std::vector<std::size_t> told;
+  for (std::size_t f = 0; f < found.figures.size(); ++f) {
+    const bool said =
+        std::any_of(told.begin(), told.end(), [&](std::size_t other) { return found.same(f, other); });
+    if (found.moves(f) && !said) told.push_back(f);
+  }
+  constexpr std::size_t kColumns = 4;
+  for (std::size_t first = 0; first < found.smooth.size(); first += kColumns) {
+    if (first == 0) {
+      sheet.paragraph(
+          "Change of every figure when a variable grows by 1 % of its range: in percent, of logarithms as it "
+          "is.",
+          2, Tint::dim);
+    }
+    const std::size_t last = std::min(first + kColumns, found.smooth.size());
+    std::vector<std::string> head{"figure"}, steps{""};
+    for (std::size_t i = first; i < last; ++i) {
+      const SearchVariable& variable = outcome.problem.variables[found.smooth[i]];
+      head.push_back(variable.name);
+      DesignValue step = outcome.front[*outcome.chosen].variables[found.smooth[i]];
+      step.value = ChosenSensitivity::kPart * (variable.max - variable.min);
+      steps.push_back(fmt::format("+{}", value_text(step)));
+    }
+    std::vector<std::vector<std::string>> rows{steps};
+    for (const std::size_t f : told) {
+      if (!found.slides(f)) continue;
+      std::vector<std::string> row{found.figures[f].name};
+      for (std::size_t i = first; i < last; ++i) {
+        row.push_back(change_text(found.values[f], found.values[f] + found.change(f, i, outcome.problem),
+                                  found.figures[f].logarithm));
+      }
+      rows.push_back(std::move(row));
+    }
+    sheet.table(head, rows);
+  }
+  for (const ChosenSensitivity::Step& step : found.steps) {
+    sheet.gap();
+    const std::string& name = study.variables[step.variable].name;
+    std::vector<std::string> head{"figure"};
+    std::string said = fmt::format("{}, {}:", name,
+                                   outcome.front[*outcome.chosen].variables[step.variable].part.empty()
+                                       ? "one step"
+                                       : "the parts beside it");
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (step.value[side].empty()) continue;
+      const char* way = side == 0 ? "down" : "up";
+      head.emplace_back(way);
+      said += fmt::format(" {} is {}{};", way, step.value[side],
+                          step.feasible[side] ? "" : ", which breaks a constraint");
+    }
+    said.back() = '.';
+    sheet.paragraph(said, 2, Tint::dim);
+    std::vector<std::vector<std::string>> rows;
+    for (const std::size_t f : told) {
+      std::vector<std::string> row{found.figures[f].name};
+      for (std::size_t side = 0; side < 2; ++side) {
+        if (step.value[side].empty()) continue;
+        row.push_back(change_text(found.values[f], step.figures[side][f], found.figures[f].logarithm));
+      }
+      rows.push_back(std::move(row));
+    }
+    sheet.table(head, rows);
+  }
+  std::string still;
+  for (std::size_t f = 0; f < found.figures.size(); ++f) {
+    if (found.moves(f)) continue;
+    still += fmt::format("{}{}", still.empty() ? "" : ", ", found.figures[f].name);
+  }
+  if (!still.empty()) sheet.paragraph(fmt::format("Nothing of this changes {}.", still), 2, Tint::dim);
 }
 
 }  // namespace
@@ -157,6 +376,7 @@ Json outcome_json(const StudyOutcome& outcome, const StudyModel& model) {
     entry["name"] = one.name;
     entry["goal"] = one.maximise ? "maximise" : "minimise";
     entry["value"] = one.value;
+    entry["unit"] = model.objective_units()[document["objectives"].size()];
     document["objectives"].push_back(entry);
   }
   document["constraints"] = Json::array();
@@ -185,13 +405,32 @@ Json outcome_json(const StudyOutcome& outcome, const StudyModel& model) {
   Json chosen = sheet_json(outcome.front[*outcome.chosen], study);
   chosen["row"] = *outcome.chosen;
   chosen["rule"] = outcome.choice;
-  if (outcome.slopes) {
-    for (std::size_t i = 0; i < outcome.slopes->variables.size(); ++i) {
-      for (std::size_t o = 0; o < study.objectives.size(); ++o) {
-        const double slope = outcome.slopes->slopes.slope[o * outcome.slopes->variables.size() + i];
-        chosen["slopes"][study.variables[outcome.slopes->variables[i]].name][study.objectives[o].name] =
-            json_number(slope);
+  if (outcome.sensitivity) {
+    const ChosenSensitivity& found = *outcome.sensitivity;
+    chosen["slopes"] = Json::object();
+    for (std::size_t i = 0; i < found.smooth.size(); ++i) {
+      Json& slopes = chosen["slopes"][study.variables[found.smooth[i]].name];
+      for (std::size_t f = 0; f < found.figures.size(); ++f) {
+        slopes[found.figures[f].name] = json_number(found.slopes.slope[f * found.smooth.size() + i]);
       }
+    }
+    chosen["steps"] = Json::object();
+    for (const ChosenSensitivity::Step& step : found.steps) {
+      Json& entry = chosen["steps"][study.variables[step.variable].name];
+      for (const bool up : {false, true}) {
+        const auto side = static_cast<std::size_t>(up);
+        Json& one = entry[up ? "up" : "down"];
+        if (step.value[side].empty()) continue;
+        one["value"] = step.value[side];
+        one["feasible"] = step.feasible[side];
+        for (std::size_t f = 0; f < found.figures.size(); ++f) {
+          one["figures"][found.figures[f].name] = json_number(step.figures[side][f]);
+        }
+      }
+    }
+    chosen["margins"] = Json::object();
+    for (std::size_t c = 0; c < found.margins.size(); ++c) {
+      chosen["margins"][study.constraints[c].name] = json_number(found.margins[c]);
     }
   }
   if (outcome.tolerances) chosen["tolerances"] = tolerances_json(*outcome.tolerances, study);
@@ -275,7 +514,8 @@ std::string outcome_text(const StudyOutcome& outcome, const StudyModel& model, c
       std::vector<std::vector<std::string>> rows;
       const auto add = [&](const std::string& label, const DesignSheet& design) {
         std::vector<std::string> row{label};
-        for (const double value : design.objectives) row.push_back(number(value));
+        for (std::size_t o = 0; o < design.objectives.size(); ++o)
+          row.push_back(amount(design.objectives[o], model.objective_units()[o]));
         rows.push_back(std::move(row));
       };
       for (std::size_t o = 0; o < study.objectives.size(); ++o) {
@@ -289,32 +529,17 @@ std::string outcome_text(const StudyOutcome& outcome, const StudyModel& model, c
     for (const DesignValue& one : chosen.variables) sheet.row(one.name, value_text(one));
     for (const DesignValue& one : chosen.derived) sheet.row(one.name, value_text(one), "follows");
     for (std::size_t o = 0; o < study.objectives.size(); ++o) {
-      sheet.row(study.objectives[o].name, number(chosen.objectives[o]),
+      sheet.row(study.objectives[o].name, amount(chosen.objectives[o], model.objective_units()[o]),
                 study.objectives[o].maximise ? "objective, to be large" : "objective, to be small");
     }
     for (std::size_t c = 0; c < study.constraints.size(); ++c) {
       const StudyConstraint& one = study.constraints[c];
-      sheet.row(one.name, number(chosen.constraints[c]),
+      sheet.row(one.name, amount(chosen.constraints[c], model.constraint_units()[c]),
                 fmt::format("{}{}{}", one.min.empty() ? "" : "at least " + one.min,
                             one.min.empty() || one.max.empty() ? "" : ", ",
                             one.max.empty() ? "" : "at most " + one.max));
     }
-    if (outcome.slopes) {
-      sheet.heading("Sensitivity");
-      sheet.paragraph("Change of each objective in %, when a variable grows by 1 % of itself.", 2, Tint::dim);
-      std::vector<std::string> head{"variable"};
-      for (const StudyObjective& one : study.objectives) head.push_back(one.name);
-      std::vector<std::vector<std::string>> rows;
-      for (std::size_t i = 0; i < outcome.slopes->variables.size(); ++i) {
-        std::vector<std::string> row{study.variables[outcome.slopes->variables[i]].name};
-        for (std::size_t o = 0; o < study.objectives.size(); ++o) {
-          const auto change = elasticity(outcome, o, i);
-          row.push_back(change ? fmt::format("{:+.2f}", *change) : "–");
-        }
-        rows.push_back(std::move(row));
-      }
-      sheet.table(head, rows);
-    }
+    if (outcome.sensitivity) write_sensitivity(outcome, model, sheet);
     if (outcome.tolerances) {
       sheet.heading("Tolerances");
       std::string strays;
@@ -331,9 +556,10 @@ std::string outcome_text(const StudyOutcome& outcome, const StudyModel& model, c
       std::vector<std::vector<std::string>> rows;
       for (std::size_t o = 0; o < study.objectives.size(); ++o) {
         const OutcomeSpread& spread = outcome.tolerances->outcomes[o];
-        rows.push_back({study.objectives[o].name, number(spread.nominal), number(spread.mean.value),
-                        number(spread.standard_deviation, 3), number(spread.percentile_5.value),
-                        number(spread.percentile_95.value)});
+        const std::string& unit = model.objective_units()[o];
+        rows.push_back({study.objectives[o].name, amount(spread.nominal, unit), amount(spread.mean.value, unit),
+                        amount(spread.standard_deviation, unit), amount(spread.percentile_5.value, unit),
+                        amount(spread.percentile_95.value, unit)});
       }
       sheet.table({"objective", "designed", "mean", "deviation", "5 %", "95 %"}, rows);
       if (!study.constraints.empty()) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,10 +16,48 @@
 
 namespace zwidth {
 
-/// How much each figure changes with each number that was chosen freely.
-struct ChosenSlopes {
-  std::vector<std::size_t> variables;  ///< of the study, those that are no whole numbers
-  Sensitivity slopes;                  ///< of the objectives, not negated
+/// One number that a study says of every design.
+struct OutcomeFigure {
+  enum class Kind { objective, constraint, further };
+  std::string name;
+  std::string unit;  ///< SI; empty where it is not known
+  Kind kind = Kind::further;
+  bool logarithm = false;  ///< its changes are told as they are, not in percent
+};
+/// Objectives, values of constraints, then derived values and measures with names: as `figure_values` has them.
+std::vector<OutcomeFigure> outcome_figures(const StudyModel& model);
+std::vector<double> figure_values(const DesignSheet& sheet, const Study& study);
+/// How far each constraint is from its nearest limit, below zero where it is broken.
+std::vector<double> margins_of(const DesignSheet& sheet);
+
+/// How much each figure changes with each variable, at the chosen design.
+struct ChosenSensitivity {
+  std::vector<OutcomeFigure> figures;
+  std::vector<double> values;   ///< of the figures
+  std::vector<double> margins;  ///< of the constraints
+
+  std::vector<std::size_t> smooth;  ///< variables that may have any value
+  /// Of figures and margins, along those; empty if there are none.
+  Sensitivity slopes;
+
+  /// A variable with steps, whole numbers or parts, one step down and one up.
+  struct Step {
+    std::size_t variable = 0;
+    std::array<std::string, 2> value;            ///< in words; empty where there is no such step
+    std::array<std::vector<double>, 2> figures;  ///< then
+    std::array<bool, 2> feasible{};
+  };
+  std::vector<Step> steps;
+
+  /// Whether any smooth variable changes a figure.
+  bool slides(std::size_t figure) const;
+  /// Whether any variable does.
+  bool moves(std::size_t figure) const;
+  /// Whether two figures are one number by two names.
+  bool same(std::size_t a, std::size_t b) const;
+  /// Change of a figure when a smooth variable grows by `kPart` of its range.
+  double change(std::size_t figure, std::size_t i, const SearchProblem& problem) const;
+  static constexpr double kPart = 0.01;
 };
 
 /// Something that is undefined in some designs, and why.
@@ -35,7 +74,9 @@ struct StudyOutcome {
   std::vector<DesignSheet> front;     ///< of `SearchResult::front`
   std::optional<std::size_t> chosen;  ///< in `front`; nothing if no design is feasible
   std::string choice;                 ///< how it was chosen, in words
-  std::optional<ChosenSlopes> slopes;
+  std::optional<ChosenSensitivity> sensitivity;
+  std::optional<DesignSheet> start;          ///< the device itself, moved into the bounds
+  bool start_moved = false;                  ///< it had to be
   std::optional<ToleranceStudy> tolerances;  ///< of objectives, then violations
   std::vector<CountedObstacle> obstacles;    ///< most frequent first
   int looked_at = 0;                         ///< how many designs, drawn at random, those are counted in
@@ -52,6 +93,22 @@ struct StudyOutcome {
 
 /// "12.3 mm", "maxon-...", "0.571 rad": a variable for people.
 std::string value_text(const DesignValue& value);
+
+/// The same of a number with its SI unit.
+std::string amount(double value, const std::string& unit);
+
+/// "+1.2 %", of logarithms "+0.034"; "–" where there is no value after the change.
+std::string change_text(double before, double after, bool logarithm);
+
+/// How a constraint of the study stands at the chosen design, in words.
+struct ConstraintActivity {
+  std::string name, value, limit;
+  std::string margin;     ///< how far it is from the limit
+  double share = 0.0;     ///< that, of the limit
+  bool active = false;    ///< at it
+  std::string broken_by;  ///< "crank −1.3 mm": the variable that alone uses up the margin first; may be empty
+};
+std::vector<ConstraintActivity> constraint_activity(const StudyOutcome& outcome, const StudyModel& model);
 
 /// Pages, tables and figures of the outcome, written into `directory`; what was written, by purpose.
 std::vector<std::pair<std::string, std::string>> write_outcome(const StudyOutcome& outcome,

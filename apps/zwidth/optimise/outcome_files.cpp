@@ -77,7 +77,7 @@ std::string label_of(const StudyObjective& objective) {
   return fmt::format("{} (to be {})", objective.name, objective.maximise ? "large" : "small");
 }
 
-std::vector<SheetFigure> outcome_figures(const StudyOutcome& outcome, const Study& study) {
+std::vector<SheetFigure> drawn_figures(const StudyOutcome& outcome, const Study& study) {
   std::vector<SheetFigure> figures;
   const std::size_t n = study.objectives.size();
   const auto range_of = [&](std::size_t o) {
@@ -353,7 +353,7 @@ std::vector<std::pair<std::string, std::string>> write_outcome(const StudyOutcom
     write_file(path, text);
     files.emplace_back(what, path);
   };
-  const std::vector<SheetFigure> figures = outcome_figures(outcome, study);
+  const std::vector<SheetFigure> figures = drawn_figures(outcome, study);
   write("page with figures", "index.html", page(outcome, model, figures));
   if (outcome.chosen) write("chosen device", "chosen.toml", chosen_device(outcome, model));
   if (!outcome.front.empty()) write("Pareto set", "pareto.csv", pareto_csv(outcome, study));

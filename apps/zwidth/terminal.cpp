@@ -42,7 +42,10 @@ std::string repeated(std::string_view text, int count) {
 
 Terminal detect_terminal(int fd) {
   Terminal terminal;
-  terminal.interactive = isatty(fd) == 1;
+  // A launcher gives its first rank a terminal of its own making, wherever its own output goes.
+  const bool launched = set_and_not_empty("OMPI_COMM_WORLD_SIZE") || set_and_not_empty("PMI_SIZE") ||
+                        set_and_not_empty("PMIX_RANK");
+  terminal.interactive = isatty(fd) == 1 && !launched;
   const char* kind = std::getenv("TERM");
   const bool dumb = kind != nullptr && std::strcmp(kind, "dumb") == 0;
   terminal.colour = terminal.interactive && !dumb && !set_and_not_empty("NO_COLOR");

@@ -105,6 +105,10 @@ TEST_F(OptimiseRobustness, GivesTheSameDesignsOnRanksAndThreads) {
   ASSERT_EQ(one.status, 0) << one.err;
   ASSERT_EQ(ranks.status, 0) << ranks.err;
   EXPECT_EQ(ranks.json().at("search").at("workers"), 2);
+  const Outcome page =
+      run({"optimise", study, "-o", folder("page"), "--set", "search.generations=2"}, two_ranks());
+  EXPECT_EQ(page.out.find('\x1b'), std::string::npos);  // the launcher's terminal is nobody's
+  EXPECT_NE(page.out.find("ranks"), std::string::npos);
   for (const char* part : {"pareto", "chosen", "constraints"}) {
     EXPECT_EQ(one.json().at(part), two.json().at(part)) << part;
     EXPECT_EQ(one.json().at(part), ranks.json().at(part)) << part;

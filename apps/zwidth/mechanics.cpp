@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 #include <numbers>
 
+#include "efforts.h"
 #include "figure/plot.h"
+#include "statistic_text.h"
 
 namespace zwidth {
 
@@ -24,10 +26,10 @@ std::vector<std::vector<std::string>> rows_of(const Sweep& sweep) {
   for (int f = 0; f < kMechanicalFigureCount; ++f) {
     const auto which = static_cast<MechanicalFigure>(f);
     if (!known(sweep, which)) continue;
-    const auto& statistic = sweep[which];
+    if (which == MechanicalFigure::gravity_torque) continue;  // of the joints, not of the tool
     const ShownUnit shown = shown_unit(which);
-    rows.push_back({std::string(mechanical_figure_info(f).meaning), number(statistic.min * shown.factor),
-                    number(statistic.mean * shown.factor), number(statistic.max * shown.factor), shown.unit});
+    rows.push_back(statistic_cells(std::string(mechanical_figure_info(f).meaning), sweep[which], shown.factor,
+                                   shown.unit, true));
   }
   return rows;
 }
@@ -112,7 +114,9 @@ SheetFigure map_of(const MechanicalCut& cut, MechanicalFigure which, const Inter
 
 }  // namespace
 
-ShownUnit shown_unit(MechanicalFigure which) {
+ShownUnit shown_unit(MechanicalFigure which, bool slides) {
+  if (which == MechanicalFigure::gravity_torque)
+    return slides ? ShownUnit{"N", 1.0} : ShownUnit{"mN m", kMilli};
   if (which <= MechanicalFigure::stiffest) return {"N/mm", 1e-3};
   if (which <= MechanicalFigure::heaviest) return {"g", kMilli};
   if (which == MechanicalFigure::acceleration) return {"m/s²", 1.0};
@@ -126,6 +130,28 @@ std::vector<std::vector<std::string>> mechanics_rows(const MechanicalPostures& s
   return rows_of(sweep);
 }
 
+bool knows_inertia(const MechanicalSweep& sweep) {
+  return known(sweep, MechanicalFigure::lightest) || known(sweep, MechanicalFigure::gravity_torque);
+}
+
+std::vector<std::vector<std::string>> inertia_rows(const MechanicalSweep& sweep,
+                                                   const std::vector<bool>& joint_slides) {
+  std::vector<std::vector<std::string>> rows;
+  const bool slides = all_slide(joint_slides);
+  const auto add = [&](const std::string& label, MechanicalFigure which) {
+    const ShownUnit shown = shown_unit(which, slides);
+    if (known(sweep, which))
+      rows.push_back(statistic_cells(label, sweep[which], shown.factor, shown.unit, true));
+  };
+  add("apparent mass along x", MechanicalFigure::mass_x);
+  add("apparent mass along y", MechanicalFigure::mass_y);
+  add("apparent mass along z", MechanicalFigure::mass_z);
+  add("in the lightest direction", MechanicalFigure::lightest);
+  add("in the heaviest direction", MechanicalFigure::heaviest);
+  add(slides ? "force against gravity" : "torque against gravity", MechanicalFigure::gravity_torque);
+  return rows;
+}
+
 std::vector<MechanicsPlace> mechanics_places(const MechanicalSweep& sweep, bool in_plane) {
   std::vector<MechanicsPlace> places;
   const auto add = [&](const char* name, MechanicalFigure which, bool least) {
@@ -133,8 +159,10 @@ std::vector<MechanicsPlace> mechanics_places(const MechanicalSweep& sweep, bool 
     const Statistic& statistic = sweep[which];
     const ShownUnit shown = shown_unit(which);
     const Vector3& at = least ? statistic.min_at : statistic.max_at;
-    places.push_back({name, quantity(least ? statistic.min : statistic.max, shown.factor, shown.unit),
-                      "at " + (in_plane ? plane_point_text(at) : point_text(at))});
+    const bool endless = !least && statistic.unbounded;
+    places.push_back(
+        {name, endless ? "no bound" : quantity(least ? statistic.min : statistic.max, shown.factor, shown.unit),
+         (endless ? "towards " : "at ") + (in_plane ? plane_point_text(at) : point_text(at))});
   };
   add("softest", MechanicalFigure::softest, true);
   add("stiffest", MechanicalFigure::stiffest, false);
@@ -171,8 +199,8 @@ void print_mechanics(const MechanicalSweep& sweep, bool in_plane, Sheet& sheet) 
   sheet.heading("Stiffness and mass over the workspace");
   const auto rows = rows_of(sweep);
   if (!rows.empty()) {
-    sheet.table({fmt::format("lattice of {}", readable(sweep.spacing, "m", 3)), "min", "mean", "max", ""},
-                rows);
+    sheet.table(statistic_heads(fmt::format("lattice of {}", readable(sweep.spacing, "m", 3)), true), rows);
+    sheet.paragraph(rows_note(rows, true), 2, Tint::dim);
     for (const MechanicsPlace& place : mechanics_places(sweep, in_plane))
       sheet.row(place.name, place.value, place.place);
   }
@@ -182,7 +210,10 @@ void print_mechanics(const MechanicalSweep& sweep, bool in_plane, Sheet& sheet) 
 void print_mechanics(const MechanicalPostures& sweep, Sheet& sheet) {
   sheet.heading("Stiffness and mass over postures");
   const auto rows = rows_of(sweep);
-  if (!rows.empty()) sheet.table({fmt::format("{} postures", sweep.solved), "min", "mean", "max", ""}, rows);
+  if (!rows.empty()) {
+    sheet.table(statistic_heads(fmt::format("{} postures", sweep.solved), true), rows);
+    sheet.paragraph(rows_note(rows, true), 2, Tint::dim);
+  }
   print_notes(sweep, sheet);
 }
 
@@ -194,13 +225,7 @@ Json mechanics_json(const MechanicalSweep& sweep) {
 }
 
 Json mechanics_json(const MechanicalPostures& sweep) {
-  Json document = json_of(sweep, [](const PostureStatistic& one) {
-    return Json{{"min", json_number(one.min)},
-                {"max", json_number(one.max)},
-                {"mean", json_number(one.mean)},
-                {"min_at", json_array(one.min_at)},
-                {"max_at", json_array(one.max_at)}};
-  });
+  Json document = json_of(sweep, [](const PostureStatistic& one) { return statistic_json(one); });
   document["postures"] = sweep.solved;
   return document;
 }
@@ -209,10 +234,10 @@ std::string acceleration_text(const MechanicalSweep& sweep, bool in_plane) {
   const Statistic& a = sweep[MechanicalFigure::acceleration];
   if (a.count == 0) return {};
   return fmt::format(
-      "The continuous torques accelerate the tool in every direction by {} to {} m/s² (mean {}), the device's "
-      "own "
-      "weight taken off; least at {}.",
-      number(a.min), number(a.max), number(a.mean),
+      "The continuous torques accelerate the tool in every direction by {} to {} m/s² (median {}), the "
+      "device's "
+      "own weight taken off; least at {}.",
+      number(a.min), largest_text(a, 1.0), number(a.median.value_or(a.mean)),
       in_plane ? plane_point_text(a.min_at) : point_text(a.min_at));
 }
 

@@ -19,11 +19,16 @@ struct ShownUnit {
   const char* unit;
   double factor;
 };
-ShownUnit shown_unit(MechanicalFigure which);
+/// `slides`: every joint does.
+ShownUnit shown_unit(MechanicalFigure which, bool slides = false);
 
-/// A row of least, mean and largest per figure that is known.
+/// A row of `statistic_cells` per figure that is known.
 std::vector<std::vector<std::string>> mechanics_rows(const MechanicalSweep& sweep);
 std::vector<std::vector<std::string>> mechanics_rows(const MechanicalPostures& sweep);
+/// Whether it has anything to say of these rows: apparent masses, and the torque or force against gravity.
+bool knows_inertia(const MechanicalSweep& sweep);
+std::vector<std::vector<std::string>> inertia_rows(const MechanicalSweep& sweep,
+                                                   const std::vector<bool>& joint_slides);
 /// Where the tool is softest and heaviest, and where it vibrates slowest: name, value and place.
 struct MechanicsPlace {
   std::string name, value, place;

@@ -5,6 +5,7 @@
 #include "efforts.h"
 #include "sheet_json.h"
 #include "sheet_text.h"
+#include "statistic_text.h"
 #include "terminal.h"
 
 namespace zwidth {
@@ -14,8 +15,9 @@ constexpr const char* kAxes[] = {"x", "y", "z"};
 
 class TableBuilder {
  public:
-  TableBuilder(std::string id, std::string title, std::string how)
-      : table_{std::move(id), std::move(title), std::move(how), {}} {}
+  TableBuilder(std::string id, std::string title, std::string how, bool quantiles = false)
+      : table_{std::move(id), std::move(title), std::move(how), {}, quantiles} {}
+  void how(std::string text) { table_.how = std::move(text); }
 
   void row(std::string name, const PostureStatistic& statistic, double factor, std::string unit) {
     if (statistic.count > 0) table_.rows.push_back({std::move(name), &statistic, factor, std::move(unit)});
@@ -43,15 +45,6 @@ std::string loads_text(const ToolVector& loads, Eigen::Index first, Eigen::Index
   std::string text;
   for (Eigen::Index r = first; r < first + count; ++r) text += (text.empty() ? "" : ", ") + number(loads[r], 3);
   return fmt::format("{} {}", text, unit);
-}
-
-Json statistic_json(const PostureStatistic& statistic) {
-  if (statistic.count == 0) return nullptr;
-  return {{"min", json_number(statistic.min)},
-          {"max", json_number(statistic.max)},
-          {"mean", json_number(statistic.mean)},
-          {"min_at", json_array(statistic.min_at)},
-          {"max_at", json_array(statistic.max_at)}};
 }
 
 Json axes_json(const std::array<PostureStatistic, 3>& statistics) {
@@ -153,8 +146,8 @@ std::string share_text(const Share& share) {
 
 }  // namespace
 
-std::vector<PostureTable> arm_tables(const ArmSheet& arm, const Mechanism& mechanism,
-                                     const std::vector<bool>& joint_slides) {
+std::vector<PostureTable> arm_tables(const DataSheet& sheet, const Mechanism& mechanism) {
+  const ArmSheet& arm = *sheet.arm;
   const PostureSweep& sweep = arm.continuous;
   const std::string postures = fmt::format("{} postures spread evenly over the joint ranges", sweep.solved);
   std::vector<PostureTable> tables;
@@ -183,13 +176,19 @@ std::vector<PostureTable> arm_tables(const ArmSheet& arm, const Mechanism& mecha
   }
   force.into(tables);
 
-  TableBuilder inertia("inertia", "Inertia felt at the tool",
-                       postures + ". Against pure forces, with rotors and transmissions.");
-  inertia.row("in the lightest direction", sweep.lightest, kMilli, "g");
-  inertia.row("in the heaviest direction", sweep.heaviest, kMilli, "g");
-  const bool slides = all_slide(joint_slides);
-  inertia.row(slides ? "force against gravity" : "torque against gravity", sweep.gravity_torque,
-              slides ? 1.0 : kMilli, slides ? "N" : "mN m");
+  TableBuilder inertia("inertia", "Inertia felt at the tool", "", true);
+  if (sheet.mechanics_of_postures) {
+    const MechanicalPostures& masses = *sheet.mechanics_of_postures;
+    inertia.how(
+        fmt::format("{} postures spread evenly over the joint ranges. Against pure forces, with rotors and "
+                    "transmissions.",
+                    masses.solved));
+    inertia.row("in the lightest direction", masses[MechanicalFigure::lightest], kMilli, "g");
+    inertia.row("in the heaviest direction", masses[MechanicalFigure::heaviest], kMilli, "g");
+    const bool slides = all_slide(sheet.joint_slides);
+    inertia.row(slides ? "force against gravity" : "torque against gravity",
+                masses[MechanicalFigure::gravity_torque], slides ? 1.0 : kMilli, slides ? "N" : "mN m");
+  }
   inertia.into(tables);
 
   TableBuilder resolution("resolution", "Resolution at the tool",
@@ -370,6 +369,54 @@ std::vector<ArmFact> pose_facts(const PoseWorkspace& workspace) {
   return facts;
 }
 
+std::vector<ArmFact> pose_load_facts(const PoseWorkspace& workspace) {
+  std::vector<ArmFact> facts;
+  const auto add = [&](const std::string& name, const Statistic& statistic, double factor, const char* unit) {
+    if (statistic.count == 0) return;
+    facts.push_back({name, interval(statistic.min, statistic.max, factor, unit),
+                     fmt::format("mean {}", quantity(statistic.mean, factor, unit))});
+  };
+  for (std::size_t k = 0; k < 3; ++k)
+    add(fmt::format("force along {}", kAxes[k]), workspace.force[k], 1.0, "N");
+  add("force in every direction", workspace.weakest_force, 1.0, "N");
+  for (std::size_t k = 0; k < 3; ++k)
+    add(fmt::format("moment about {}", kAxes[k]), workspace.moment[k], kMilli, "mN m");
+  add("moment in every direction", workspace.weakest_moment, kMilli, "mN m");
+  return facts;
+}
+
+std::vector<ArmFact> any_orientation_facts(const PoseWorkspace& workspace) {
+  std::vector<ArmFact> facts;
+  if (!workspace.any || workspace.any->inside == 0) return facts;
+  const AnyOrientation& any = *workspace.any;
+  const int n = workspace.dimension();
+  facts.push_back({n == 3   ? "volume"
+                   : n == 2 ? "area"
+                            : "length",
+                   measure_text(any.measure, any.error_estimate, n),
+                   fmt::format("{} points of a lattice of {}, in some orientation each", any.inside,
+                               readable(any.spacing, "m", 3))});
+  for (const int axis : workspace.axes) {
+    const Interval& range = any.range[static_cast<size_t>(axis)];
+    facts.push_back({fmt::format("range of {}", kAxes[axis]), interval(range.min, range.max, kMilli, "mm"),
+                     "of the lattice points"});
+  }
+  if (any.share) {
+    facts.push_back({"orientations, mean", fmt::format("{} %", number(100.0 * any.share->mean, 3)),
+                     fmt::format("of all, over {} places, from {} to {} %", any.places,
+                                 number(100.0 * any.share->least, 3), number(100.0 * any.share->most, 3))});
+  }
+  for (const AnyOrientation::Turned& turned : any.turned) {
+    if (!(turned.angle > 0.0)) continue;
+    facts.push_back({fmt::format("turns {:g}° every way in", std::round(turned.angle * kDegrees)),
+                     measure_text(turned.measure, turned.error, n),
+                     any.measure > 0.0 ? fmt::format("{} % of that, from the home orientation",
+                                                     number(100.0 * turned.measure / any.measure, 3))
+                                       : ""});
+  }
+  return facts;
+}
+
 std::vector<ArmFact> turning_facts(const TurningRange& turning) {
   const bool in_plane = !turning.about[0] && !turning.about[1];
   const std::string from = orientation_words(turning.orientation, in_plane);
@@ -388,8 +435,8 @@ std::vector<ArmFact> turning_facts(const TurningRange& turning) {
   if (turning.share && facts.size() == 3) {
     facts.push_back(
         {"orientations",
-         fmt::format("{} % ± {}", number(100.0 * *turning.share, 3), number(100.0 * turning.share_error, 2)),
-         "of all, about any axis, without leaving the workspace between"});
+         fmt::format("{} ± {} %", number(100.0 * *turning.share, 3), number(100.0 * turning.share_error, 1)),
+         "of all orientations, about any axis, without leaving the workspace between"});
   }
   return facts;
 }
@@ -428,7 +475,8 @@ std::vector<ArmFact> home_facts(const ArmSheet& arm, const Mechanism& mechanism)
   return facts;
 }
 
-Json arm_json(const ArmSheet& arm) {
+Json arm_json(const DataSheet& sheet) {
+  const ArmSheet& arm = *sheet.arm;
   Json entry;
   entry["postures"] = arm.continuous.solved;
   entry["translation_conditioning"] = statistic_json(arm.continuous.translation_conditioning);
@@ -439,8 +487,11 @@ Json arm_json(const ArmSheet& arm) {
   entry["peak"] = arm.peak ? loads_json(*arm.peak) : Json(nullptr);
   entry["step"] = axes_json(arm.continuous.step);
   entry["turn_step"] = statistic_json(arm.continuous.turn_step);
-  entry["lightest"] = statistic_json(arm.continuous.lightest);
-  entry["heaviest"] = statistic_json(arm.continuous.heaviest);
+  const auto mass = [&sheet](MechanicalFigure which) {
+    return sheet.mechanics_of_postures ? statistic_json((*sheet.mechanics_of_postures)[which]) : Json(nullptr);
+  };
+  entry["lightest"] = mass(MechanicalFigure::lightest);
+  entry["heaviest"] = mass(MechanicalFigure::heaviest);
   entry["gravity_torque"] = statistic_json(arm.continuous.gravity_torque);
   entry["ranges"] = ranges_json(arm);
   entry["farthest"] = farthest_json(arm.farthest);
@@ -509,6 +560,40 @@ Json pose_json(const PoseWorkspace& workspace) {
                              {"rotation", conditioning(workspace.rotation)},
                              {"homogeneous", conditioning(workspace.homogeneous)},
                              {"characteristic_length", json_number(workspace.characteristic_length)}};
+  }
+  entry["forces"] = nullptr;
+  if (workspace.weakest_force.count > 0 || workspace.weakest_moment.count > 0) {
+    const auto along = [](const std::array<Statistic, 3>& axes) {
+      return Json{
+          {"x", statistic_json(axes[0])}, {"y", statistic_json(axes[1])}, {"z", statistic_json(axes[2])}};
+    };
+    entry["forces"] = {{"force", along(workspace.force)},
+                       {"force_every_direction", statistic_json(workspace.weakest_force)},
+                       {"moment", along(workspace.moment)},
+                       {"moment_every_direction", statistic_json(workspace.weakest_moment)}};
+  }
+  entry["any_orientation"] = nullptr;
+  if (workspace.any && workspace.any->inside > 0) {
+    const AnyOrientation& any = *workspace.any;
+    Json ranges, turned = Json::array();
+    for (const int axis : workspace.axes)
+      ranges[kAxes[axis]] = json_interval(any.range[static_cast<size_t>(axis)]);
+    for (const AnyOrientation::Turned& one : any.turned) {
+      turned.push_back({{"angle", json_number(one.angle)},
+                        {measure, json_number(one.measure)},
+                        {"error", json_number(one.error)}});
+    }
+    entry["any_orientation"] = {{"grid", json_number(any.spacing)},
+                                {"inside", any.inside},
+                                {measure, json_number(any.measure)},
+                                {std::string(measure) + "_error", json_number(any.error_estimate)},
+                                {"ranges", ranges},
+                                {"places", any.places},
+                                {"share", any.share ? Json{{"mean", json_number(any.share->mean)},
+                                                           {"least", json_number(any.share->least)},
+                                                           {"most", json_number(any.share->most)}}
+                                                    : Json(nullptr)},
+                                {"turned_every_way", turned}};
   }
   const TurningRange& turning = workspace.turning;
   Json about;

@@ -26,11 +26,12 @@ struct PostureTable {
   std::string title;
   std::string how;
   std::vector<PostureRow> rows;  ///< none of them empty
+  bool quantiles = false;        ///< shows median and 95th percentile instead of the mean
 };
 
 /// The tables that this sheet has something to say in.
-std::vector<PostureTable> arm_tables(const ArmSheet& arm, const Mechanism& mechanism,
-                                     const std::vector<bool>& joint_slides);
+/// REQUIRES: sheet.arm. They point into the sheet.
+std::vector<PostureTable> arm_tables(const DataSheet& sheet, const Mechanism& mechanism);
 
 /// A line of plain facts.
 struct ArmFact {
@@ -52,12 +53,17 @@ std::vector<ArmFact> orientation_facts(const std::optional<OrientationWorkspace>
 /// Where a platform that turns can be in one orientation, and how it can be turned at one place.
 std::vector<ArmFact> pose_facts(const PoseWorkspace& workspace);
 std::vector<ArmFact> turning_facts(const TurningRange& turning);
+/// What its drives can exert over those places; empty without drives.
+std::vector<ArmFact> pose_load_facts(const PoseWorkspace& workspace);
+/// Where it can be in some orientation, and how it can be turned there.
+std::vector<ArmFact> any_orientation_facts(const PoseWorkspace& workspace);
 /// An orientation as roll, pitch and yaw.
 std::string orientation_text(const Matrix3& rotation);
 /// The home posture.
 std::vector<ArmFact> home_facts(const ArmSheet& arm, const Mechanism& mechanism);
 
-Json arm_json(const ArmSheet& arm);
+/// REQUIRES: sheet.arm.
+Json arm_json(const DataSheet& sheet);
 /// Where the tool point can be, and how well conditioned: what `workspace` says. REQUIRES: arm.reach.
 Json reach_json(const ArmSheet& arm);
 Json pose_json(const PoseWorkspace& workspace);

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <functional>
 #include <set>
 
 #include "efforts.h"
 #include "figure/svg.h"
 #include "mechanics.h"
 #include "model.h"
-#include "sheet_arm.h"
-#include "sheet_stiffness.h"
+#include "sheet_page.h"
 #include "sheet_text.h"
 #include "terminal.h"
 
@@ -83,39 +81,30 @@ code{font:13.5px/1.5 ui-monospace,SFMono-Regular,Menlo,"DejaVu Sans Mono",monosp
 body{font-size:10.5pt}.page{display:block;max-width:none;padding:0}nav{display:none}h2{break-after:avoid}.figures{grid-template-columns:1fr 1fr}.scroll{overflow:visible}tr{break-inside:avoid}}
 )css";
 
-std::string cell(const std::string& text, const char* kind = "") {
-  return *kind != '\0' ? fmt::format("<td class=\"{}\">{}</td>", kind, escaped(text))
-                       : fmt::format("<td>{}</td>", escaped(text));
-}
-
-class Page {
+class Page : private SheetPage {
  public:
   Page(const DataSheet& sheet, const Description& description, const std::vector<SheetFigure>& figures,
        const std::vector<std::string>& overrides)
-      : sheet_(sheet),
-        description_(description),
-        figures_(figures),
-        overrides_(overrides),
-        values_(described_values(description)) {}
+      : SheetPage(sheet, description, figures, overrides), sheet_(sheet), description_(description) {}
 
   std::string write() {
     overview();
     mechanism();
-    if (sheet_.arm) arm(*sheet_.arm);
+    if (sheet_.arm) write_arm(*this);
     if (sheet_.workspace) workspace(*sheet_.workspace);
     if (sheet_.plane) plane(*sheet_.plane);
     if (sheet_.workspace) dexterity(sheet_.workspace->sweep);
     if (sheet_.plane) dexterity(sheet_.plane->sweep);
     if (sheet_.continuous && sheet_.peak) force();
-    inertia();
-    stiffness();
+    write_inertia(*this);
+    write_stiffness(*this);
     resolution();
     for (size_t i = 0; i < sheet_.drives.size(); ++i) drive(i);
     for (size_t i = 0; i < sheet_.pneumatic_drives.size(); ++i) cylinder(i);
     parts();
     sources();
     std::string toc;
-    for (const auto& [id, title] : contents_)
+    for (const auto& [id, title] : contents())
       toc += fmt::format("<li><a href=\"#{}\">{}</a></li>", id, escaped(title));
     const std::string name = escaped(sheet_.title.empty() ? sheet_.name : sheet_.title);
     return fmt::format(
@@ -128,53 +117,22 @@ class Page {
         "<footer>Computed by zwidth {8} from the device file alone. Lengths, angles and forces in the device's "
         "own frame. The same numbers, in SI units, are in <a href=\"report.json\">report.json</a>.</footer>\n"
         "</div>\n</body>\n</html>\n",
-        name, kStyle, figure_style(), escaped(sheet_.name), escaped(sheet_.source), changed(), toc, body_,
+        name, kStyle, figure_style(), escaped(sheet_.name), escaped(sheet_.source), changed(), toc, body(),
         ZWIDTH_VERSION);
   }
 
  private:
-  void section(const std::string& id, const std::string& title) {
-    if (!contents_.empty()) body_ += "</section>\n";
-    contents_.emplace_back(id, title);
-    body_ += fmt::format("<section><h2 id=\"{}\">{}</h2>\n", id, escaped(title));
-  }
-
-  void how(const std::string& text) { body_ += fmt::format("<p class=\"how\">{}</p>\n", escaped(text)); }
-
   std::string changed() const {
-    if (overrides_.empty()) return "";
+    if (overrides().empty()) return "";
     std::string text = "<p>Changed on the command line: ";
-    for (size_t i = 0; i < overrides_.size(); ++i)
-      text += fmt::format("{}<code>{}</code>", i > 0 ? " " : "", escaped(overrides_[i]));
+    for (size_t i = 0; i < overrides().size(); ++i)
+      text += fmt::format("{}<code>{}</code>", i > 0 ? " " : "", escaped(overrides()[i]));
     return text + "</p>";
-  }
-
-  void show_figures(const std::string& of_section, const char* kind = "") {
-    std::string cards;
-    for (const SheetFigure& figure : figures_) {
-      if (figure.section != of_section) continue;
-      cards += fmt::format("<figure class=\"card{}\" id=\"{}\"><b>{}</b>{}",
-                           figure.id.starts_with("margins") ? " wide" : "", figure.id, escaped(figure.title),
-                           figure.svg);
-      if (!figure.caption.empty()) cards += fmt::format("<figcaption>{}</figcaption>", escaped(figure.caption));
-      cards += "</figure>\n";
-    }
-    if (!cards.empty()) body_ += fmt::format("<div class=\"figures {}\">{}</div>\n", kind, cards);
-  }
-
-  void tile(const std::string& value, const std::string& label) {
-    // The unit steps back behind the number.
-    const size_t space = value.rfind(' ');
-    const std::string text = space == std::string::npos
-                                 ? escaped(value)
-                                 : fmt::format("{} <small>{}</small>", escaped(value.substr(0, space)),
-                                               escaped(value.substr(space + 1)));
-    body_ += fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>", text, escaped(label));
   }
 
   void overview() {
     section("overview", "At a glance");
-    body_ += "<div class=\"tiles\">";
+    add("<div class=\"tiles\">");
     if (sheet_.workspace) {
       tile(readable(sheet_.workspace->volume.value, "m^3", 3), "workspace volume");
       tile(readable(2.0 * sheet_.workspace->inscribed.sphere.size, "m", 3),
@@ -216,8 +174,10 @@ class Page {
       tile(readable(sheet_.continuous->weakest.min, "N", 3), "force in every direction and place, continuous");
     if (sheet_.peak)
       tile(readable(sheet_.peak->weakest.min, "N", 3), "force in every direction and place, peak");
-    if (sheet_.inertia)
-      tile(readable(sheet_.inertia->heaviest.mean, "kg", 3), "mean apparent mass in the heaviest direction");
+    if (sheet_.mechanics) {
+      if (const auto& median = sheet_.mechanics->sweep[MechanicalFigure::heaviest].median)
+        tile(readable(*median, "kg", 3), "apparent mass in the heaviest direction, median over the workspace");
+    }
     if (sheet_.resolution[0].count > 0) {
       double worst = 0.0;
       for (const Statistic& axis : sheet_.resolution) worst = std::max(worst, axis.mean);
@@ -229,106 +189,21 @@ class Page {
         break;
       }
     }
-    body_ += "</div>\n";
+    add("</div>\n");
     show_figures("device");
     std::string warnings;
     for (const std::string& warning : sheet_.warnings) warnings += fmt::format("<p>{}</p>", escaped(warning));
-    if (!warnings.empty()) body_ += fmt::format("<div class=\"note\">{}</div>\n", warnings);
-  }
-
-  static std::string trimmed_quantity(double value, std::string_view unit) {
-    const std::string text = readable(value, unit, 6);
-    const size_t end = text.find_first_not_of("-0123456789.");
-    if (end == 0 || text.find('.') >= end) return text;
-    std::string digits = text.substr(0, end);
-    digits.erase(digits.find_last_not_of('0') + 1);
-    if (digits.back() == '.') digits.pop_back();
-    return end == std::string::npos ? digits : digits + text.substr(end);
-  }
-
-  std::string value_text(const DescribedValue& value) const {
-    if (!value.given()) return "not given";
-    if (value.dimension == Dimension::angle && value.values.size() == 2) {
-      return fmt::format("{}° … {}°", trimmed(value.values[0] * kDegrees), trimmed(value.values[1] * kDegrees));
-    }
-    if (value.values.size() == 1) return trimmed_quantity(value.values[0], si_unit(value.dimension));
-    // The unit of the largest component serves all.
-    const double largest = *std::max_element(value.values.begin(), value.values.end(),
-                                             [](double a, double b) { return std::abs(a) < std::abs(b); });
-    const std::string whole = readable(largest, si_unit(value.dimension), 6);
-    const size_t space = whole.find(' ');
-    const double factor = largest != 0.0 ? std::strtod(whole.c_str(), nullptr) / largest : 1.0;
-    std::string text;
-    for (const double component : value.values)
-      text += (text.empty() ? "" : ", ") + trimmed(component * factor);
-    return text + (space == std::string::npos ? "" : whole.substr(space));
-  }
-
-  /// Whether `--set` changed this value: keys are compared without their indices.
-  bool overridden(const DescribedValue& value) const {
-    const auto plain = [](std::string_view path) {
-      std::string result;
-      for (size_t i = 0; i < path.size(); ++i) {
-        if (path[i] == '[') {
-          while (i < path.size() && path[i] != ']') ++i;
-        } else if (path[i] == '.' && i + 1 < path.size() && path[i + 1] >= '0' && path[i + 1] <= '9') {
-          while (i + 1 < path.size() && path[i + 1] != '.') ++i;
-        } else if (path[i] != ' ') {
-          result += path[i];
-        }
-      }
-      return result;
-    };
-    const std::string key = plain(value.table + "." + value.key);
-    return std::any_of(overrides_.begin(), overrides_.end(),
-                       [&](const std::string& text) { return plain(text.substr(0, text.find('='))) == key; });
-  }
-
-  std::string source_cell(const DescribedValue& value) const {
-    if (overridden(value))
-      return "<td class=\"source\"><span class=\"tag\">--set</span> on the command line</td>";
-    return source_cell(value.source, value.chosen());
-  }
-
-  static std::string source_cell(const std::string& source, bool chosen) {
-    if (!chosen) return fmt::format("<td class=\"source\">{}</td>", escaped(source));
-    std::string_view why = source;
-    why.remove_prefix(std::min(why.size(), std::string_view("chosen").size()));
-    while (!why.empty() && (why.front() == ':' || why.front() == ' ')) why.remove_prefix(1);
-    return fmt::format("<td class=\"source\"><span class=\"tag\">chosen</span> {}</td>", escaped(why));
-  }
-
-  void values_table(const std::function<bool(const DescribedValue&)>& wanted, bool grouped) {
-    std::string rows;
-    std::string group;
-    for (const DescribedValue& value : values_) {
-      if (!wanted(value)) continue;
-      if (grouped && value.table != group) {
-        group = value.table;
-        rows += fmt::format("<tr class=\"group\"><td colspan=\"3\"><code>{}</code></td></tr>", escaped(group));
-      }
-      std::string meaning = value.meaning;
-      if (!meaning.empty())
-        meaning[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning[0])));
-      rows += fmt::format("<tr><td>{} <code>{}</code></td>{}{}</tr>\n", escaped(meaning), escaped(value.key),
-                          cell(value_text(value), "n"), source_cell(value));
-    }
-    if (rows.empty()) return;
-    body_ += fmt::format(
-        "<div class=\"scroll\"><table><tr><th>Quantity</th><th class=\"n\">Value</th><th>Where it comes "
-        "from</th></tr>{}</table></div>\n",
-        rows);
+    if (!warnings.empty()) add(fmt::format("<div class=\"note\">{}</div>\n", warnings));
   }
 
   void mechanism() {
     section("mechanism", "Mechanism");
-    body_ +=
-        fmt::format("<p>A mechanism of type <b>{}</b> with {} active joints ({}) and {} freedoms of the tool.",
+    add(fmt::format("<p>A mechanism of type <b>{}</b> with {} active joints ({}) and {} freedoms of the tool.",
                     escaped(sheet_.mechanism_type), sheet_.active_joints,
-                    escaped(fmt::format("{}", fmt::join(sheet_.joint_names, ", "))), sheet_.tool_freedoms);
+                    escaped(fmt::format("{}", fmt::join(sheet_.joint_names, ", "))), sheet_.tool_freedoms));
     if (sheet_.moving_mass > 0.0)
-      body_ += fmt::format(" Its bodies weigh {} together.", escaped(readable(sheet_.moving_mass, "kg")));
-    body_ += "</p>\n";
+      add(fmt::format(" Its bodies weigh {} together.", escaped(readable(sheet_.moving_mass, "kg"))));
+    add("</p>\n");
     values_table(
         [](const DescribedValue& value) {
           return value.table == "mechanism" || value.table.starts_with("joint[");
@@ -339,77 +214,6 @@ class Page {
   // All values of the mechanism stand in one table.
   bool description_is_flat() const {
     return !std::holds_alternative<SerialDescription>(description_.mechanism);
-  }
-
-  /// Extremes and mean, which a finer lattice would move a little.
-  void statistics_head(double spacing) {
-    statistics_head("Over a lattice of " + format_quantity(spacing, Dimension::length));
-  }
-  void statistics_head(const std::string& over) {
-    rows_ = fmt::format(
-        "<tr><th>{}</th><th class=\"n\">Least</th><th class=\"n\">Mean</th><th "
-        "class=\"n\">Most</th><th>Unit</th></tr>",
-        escaped(over));
-  }
-  void statistics(const std::string& name, const Statistic& statistic, double factor, const std::string& unit) {
-    const bool has = statistic.count > 0;
-    rows_ += "<tr>" + cell(name) + cell(has ? number(statistic.min * factor) : "–", "n") +
-             cell(has ? number(statistic.mean * factor) : "–", "n") +
-             cell(has ? number(statistic.max * factor) : "–", "n") + cell(unit, "w") + "</tr>\n";
-  }
-  void statistics_end() { body_ += fmt::format("<div class=\"scroll\"><table>{}</table></div>\n", rows_); }
-
-  void facts(const std::vector<ArmFact>& lines) {
-    std::string rows = "<tr><th>Quantity</th><th class=\"n\">Value</th><th></th></tr>";
-    for (const ArmFact& fact : lines) {
-      std::string name = fact.name.substr(std::min(fact.name.size(), fact.name.find_first_not_of(' ')));
-      if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-      rows += "<tr>" + cell(name) + cell(fact.value, "n") + cell(fact.note, "source") + "</tr>\n";
-    }
-    body_ += fmt::format("<div class=\"scroll\"><table>{}</table></div>\n", rows);
-  }
-
-  void arm(const ArmSheet& arm) {
-    if (arm.pose) {
-      section("pose", "Workspace in one orientation");
-      how("Where the tool can be without turning, away from its home posture: no joint beyond its range, no "
-          "singularity passed.");
-      facts(pose_facts(*arm.pose));
-      show_figures("pose", "three");
-      section("turning", "Turned at home");
-      how("How far the tool turns at its home place: about one axis alone, and of all orientations.");
-      facts(turning_facts(arm.pose->turning));
-    }
-    section("reach", arm.pose ? "Reach of the tool point in any orientation" : "Reach of the tool point");
-    facts(reach_facts(arm, Mechanism(description_)));
-    show_figures("reach", "three");
-    if (arm.orientations) {
-      section("orientations", "Orientations of the tool");
-      how("How the tool can be turned at the places that it reaches, with the joints in their ranges: of "
-          "orientations spread evenly over all there are, and directions of its axis over the sphere, those "
-          "that "
-          "a posture has.");
-      facts(orientation_facts(arm.orientations, home_turning(arm)));
-    }
-    if (arm.home) {
-      section("home", "Home posture");
-      facts(home_facts(arm, Mechanism(description_)));
-    }
-    for (const PostureTable& table : arm_tables(arm, Mechanism(description_), sheet_.joint_slides)) {
-      section(table.id, table.title);
-      how(table.how);
-      statistics_head("Over the joint ranges");
-      for (const PostureRow& row : table.rows) {
-        std::string name = row.name;
-        name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-        rows_ += "<tr>" + cell(name) + cell(number(row.statistic->min * row.factor), "n") +
-                 cell(number(row.statistic->mean * row.factor), "n") +
-                 cell(number(row.statistic->max * row.factor), "n") + cell(row.unit, "w") + "</tr>\n";
-      }
-      statistics_end();
-      if (table.id == "inertia")
-        values_table([](const DescribedValue& value) { return value.table.starts_with("body"); }, true);
-    }
   }
 
   void workspace(const WorkspaceSheet& workspace) {
@@ -429,9 +233,9 @@ class Page {
                           format_quantity(workspace.volume.spacing, Dimension::length),
                           quantity(workspace.volume.error_estimate, 1e6, "cm³", 1)));
     row("Volume by counting", quantity(workspace.sweep.volume, 1e6, "cm³", 6),
-        fmt::format("{} points of a {} lattice, {} in its box", workspace.sweep.inside,
-                    format_quantity(workspace.sweep.spacing, Dimension::length),
-                    workspace.sweep.lattice_points));
+        fmt::format("{} points of a {} lattice, {} in its box; within {}", workspace.sweep.inside,
+                    format_quantity(workspace.sweep.spacing, Dimension::length), workspace.sweep.lattice_points,
+                    quantity(counting_error(workspace.volume, workspace.sweep), 1e6, "cm³", 1)));
     for (size_t k = 0; k < 3; ++k) {
       const Interval& range = workspace.extents.range[k];
       row(fmt::format("Range of {}", axis(k)), interval(range.min, range.max, kMilli, "mm"),
@@ -443,7 +247,7 @@ class Page {
         "centre at " + point_text(inscribed.sphere.centre));
     row("Largest cube inside", quantity(inscribed.cube.size, kMilli, "mm") + " edge",
         "sides along the axes, centre at " + point_text(inscribed.cube.centre));
-    body_ += fmt::format("<div class=\"scroll\"><table>{}</table></div>\n", rows);
+    add(fmt::format("<div class=\"scroll\"><table>{}</table></div>\n", rows));
     show_figures("workspace");
   }
 
@@ -464,8 +268,9 @@ class Page {
             : fmt::format("enclosed by the boundary, found to 1e-7 m at points {} apart, within {}",
                           readable(plane.area.spacing, "m", 3), within));
     row("Area by counting", quantity(plane.sweep.area, 1e4, "cm²", 5),
-        fmt::format("{} points of a {} lattice", plane.sweep.inside,
-                    format_quantity(plane.sweep.spacing, Dimension::length)));
+        fmt::format("{} points of a {} lattice; within {}", plane.sweep.inside,
+                    format_quantity(plane.sweep.spacing, Dimension::length),
+                    quantity(counting_error(plane.area, plane.sweep), 1e4, "cm²", 1)));
     for (size_t k = 0; k < 2; ++k) {
       const Interval& range = plane.extents.range[k];
       row(fmt::format("Range of {}", axis(k)), interval(range.min, range.max, kMilli, "mm"),
@@ -486,7 +291,7 @@ class Page {
           interval(dexterous.annulus->min, dexterous.annulus->max, kMilli, "mm"),
           "radius of circles about the origin of the base frame");
     }
-    body_ += fmt::format("<div class=\"scroll\"><table>{}</table></div>\n", rows);
+    add(fmt::format("<div class=\"scroll\"><table>{}</table></div>\n", rows));
     show_figures("workspace");
   }
 
@@ -508,19 +313,19 @@ class Page {
     }
     statistics_end();
     if (sheet_.conditioning) {
-      body_ += fmt::format(
+      add(fmt::format(
           "<p>Global conditioning index, the mean of 1/K over the {}: <b>{}</b> (Gosselin &amp; Angeles 1991). "
           "By "
           "condition number K: {}.</p>\n",
           sheet_.plane ? "area" : "volume", number(sheet_.conditioning->of_all.index(), 4),
-          escaped(shares_by_class(sheet_.conditioning->of_all)));
+          escaped(shares_by_class(sheet_.conditioning->of_all))));
       const Statistic& K = sweep[Figure::condition_number];
       if (K.count > 0) {
-        body_ += fmt::format(
+        add(fmt::format(
             "<p>Nearest to isotropic: K = {} at {}. Near isotropic, K &lt; {:g}: {} of the {}.</p>\n",
             number(K.min), escaped(sheet_.plane ? plane_point_text(K.min_at) : point_text(K.min_at)),
             kNearIsotropic, near_isotropic_share(sheet_.conditioning->of_all),
-            sheet_.plane ? "area" : "volume");
+            sheet_.plane ? "area" : "volume"));
       }
     }
     show_figures("dexterity", "three");
@@ -535,9 +340,8 @@ class Page {
         "farthest corner.");
     for (const auto& [name, forces] :
          {std::pair{"Continuous", &*sheet_.continuous}, std::pair{"Peak", &*sheet_.peak}}) {
-      body_ +=
-          fmt::format("<h3>{}: {} per joint, limited by the {}</h3>\n", name,
-                      escaped(efforts_text(forces->torque, sheet_.joint_slides)), escaped(forces->limited_by));
+      add(fmt::format("<h3>{}: {} per joint, limited by the {}</h3>\n", name,
+                      escaped(efforts_text(forces->torque, sheet_.joint_slides)), escaped(forces->limited_by)));
       statistics_head(sweep().spacing);
       for (size_t k = 0; k < axis_count(); ++k)
         statistics(fmt::format("Pure force along {}", axis(k)), forces->axes[k], 1.0, "N");
@@ -546,54 +350,6 @@ class Page {
       statistics_end();
     }
     show_figures("force", "three");
-  }
-
-  void inertia() {
-    if (!sheet_.inertia) return;
-    section("inertia", "Inertia");
-    how("Apparent mass at the tool, free to move sideways, with rotors and transmissions.");
-    statistics_head(sheet_.inertia->spacing);
-    for (size_t k = 0; k < axis_count(); ++k)
-      statistics(fmt::format("Along {}", axis(k)), sheet_.inertia->along_axes[k], kMilli, "g");
-    statistics("In the lightest direction", sheet_.inertia->lightest, kMilli, "g");
-    statistics("In the heaviest direction", sheet_.inertia->heaviest, kMilli, "g");
-    const bool slides = all_slide(sheet_.joint_slides);
-    statistics(slides ? "Largest joint force against gravity" : "Largest joint torque against gravity",
-               sheet_.inertia->gravity_torque, slides ? 1.0 : kMilli, slides ? "N" : "mN m");
-    statistics_end();
-    if (sheet_.mechanics)
-      body_ += fmt::format("<p>{}</p>\n",
-                           escaped(acceleration_text(sheet_.mechanics->sweep, sheet_.plane.has_value())));
-    show_figures("inertia", "three");
-    values_table([](const DescribedValue& value) { return value.table.starts_with("body"); }, true);
-  }
-
-  void stiffness() {
-    section("stiffness", "Stiffness and vibration");
-    if (sheet_.stiffness) {
-      how(stiffness_how(*sheet_.stiffness));
-      statistics_head("Over postures");
-      for (const std::vector<std::string>& row : stiffness_rows(sheet_)) {
-        std::string name = row[0];
-        name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-        rows_ += "<tr>" + cell(name) + cell(row[1], "n") + cell(row[2], "n") + cell(row[3], "n") +
-                 cell(row[4], "w") + "</tr>\n";
-      }
-      statistics_end();
-      body_ += fmt::format("<p>What gives way: {}.</p>\n", escaped(give_text(*sheet_.stiffness)));
-    }
-    if (sheet_.mechanics && sheet_.mechanics->sweep.of) {
-      std::string places;
-      for (const MechanicsPlace& place : mechanics_places(sheet_.mechanics->sweep, sheet_.plane.has_value()))
-        places += fmt::format("{}{}: {} {}", places.empty() ? "" : "; ", place.name, place.value, place.place);
-      if (!places.empty())
-        body_ += fmt::format("<p>On a lattice of {}: {}.</p>\n",
-                             readable(sheet_.mechanics->sweep.spacing, "m", 3), escaped(places));
-      show_figures("stiffness", "three");
-    }
-    for (const std::string& laminate : laminate_texts(description_))
-      body_ += fmt::format("<p>{}</p>\n", escaped(laminate));
-    for (const std::string& missing : not_given(sheet_)) body_ += fmt::format("<p>{}</p>\n", escaped(missing));
   }
 
   void resolution() {
@@ -613,10 +369,10 @@ class Page {
                       cell(readable(sheet_.joint_resolution[i], sheet_.joint_slides[j] ? "m" : "rad"), "n"),
                       cell(readable(sheet_.torque_resolution[i], effort_unit(sheet_.joint_slides[j])), "n"));
     }
-    body_ += fmt::format(
-        "<div class=\"scroll\"><table><tr><th>Joint</th><th class=\"n\">Step of one count</th><th "
-        "class=\"n\">Torque or force of one current step</th></tr>{}</table></div>\n",
-        text);
+    add(
+        fmt::format("<div class=\"scroll\"><table><tr><th>Joint</th><th class=\"n\">Step of one count</th><th "
+                    "class=\"n\">Torque or force of one current step</th></tr>{}</table></div>\n",
+                    text));
     if (sheet_.middle && sheet_.middle->force_resolution) {
       std::string steps;
       for (const double step : *sheet_.middle->force_resolution)
@@ -630,24 +386,24 @@ class Page {
     const PneumaticDrive& drive = sheet_.pneumatic_drives[i].drive;
     const PneumaticDriveDescription& description = drive.description();
     section(fmt::format("cylinder-{}", i), "Cylinder of " + sheet_.pneumatic_drives[i].joint);
-    body_ += fmt::format(
+    add(fmt::format(
         "<p>Cylinder <b>{}</b>, two regulators <b>{}</b>, angle sensor <b>{}</b>. Highest pressure {}, set by "
         "the "
         "{}.</p>\n",
         escaped(description.cylinder.info.title), escaped(description.regulator.info.title),
         escaped(description.potentiometer ? description.potentiometer->info.title : "not given"),
-        readable(drive.usable_pressure(), "Pa"), to_string(drive.limited_by()));
+        readable(drive.usable_pressure(), "Pa"), to_string(drive.limited_by())));
     how("Computed from the values of the drive and its parts. Torques follow the lever over the joint's range, "
         "and "
         "differ with the direction by the area of the rod.");
-    body_ += "<div class=\"card pair\">";
+    add("<div class=\"card pair\">");
     for (const DriveFigure& figure : drive.figures()) {
       std::string name = figure.name;
       name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-      body_ += fmt::format("<dl><dt>{}</dt><dd>{}</dd></dl>", escaped(name),
-                           escaped(readable(figure.value, figure.unit)));
+      add(fmt::format("<dl><dt>{}</dt><dd>{}</dd></dl>", escaped(name),
+                      escaped(readable(figure.value, figure.unit))));
     }
-    body_ += "</div>\n";
+    add("</div>\n");
     std::string rows =
         "<tr><th>Margin</th><th class=\"n\">Demand</th><th class=\"n\">Limit</th><th></th><th>Rule</th></tr>";
     for (const Margin& margin : drive.margins()) {
@@ -655,8 +411,8 @@ class Page {
               cell(readable(margin.capability, margin.unit), "n") +
               cell(margin.ok ? "✓" : "✗", margin.ok ? "ok" : "no") + cell(margin.rule, "source") + "</tr>\n";
     }
-    body_ += fmt::format(
-        "<h3>Margins</h3><div class=\"scroll\"><table>{}</table></div>\n<h3>Values of the drive</h3>\n", rows);
+    add(fmt::format(
+        "<h3>Margins</h3><div class=\"scroll\"><table>{}</table></div>\n<h3>Values of the drive</h3>\n", rows));
     // Joints with a drive in common have its values in common.
     const auto& all = description_.pneumatic_drives;
     const auto place = std::find(all.begin(), all.end(), description) - all.begin();
@@ -673,20 +429,20 @@ class Page {
     const DriveDescription& description = drive.drive.description();
     section(fmt::format("drive-{}", i), sheet_.drives.size() > 1 ? fmt::format("Drive {}", i + 1) : "Drive");
     const TransmissionText transmission = transmission_text(description.transmission);
-    body_ += fmt::format(
+    add(fmt::format(
         "<p>Moves {}. Motor <b>{}</b>, encoder <b>{}</b>, amplifier <b>{}</b>, transmission <b>{}</b>.</p>\n",
         escaped(fmt::format("{}", fmt::join(drive.joints, ", "))), escaped(description.motor.info.title),
         escaped(description.encoder.info.title), escaped(description.amplifier.info.title),
-        escaped(transmission.kind + (transmission.detail.empty() ? "" : ", " + transmission.detail)));
+        escaped(transmission.kind + (transmission.detail.empty() ? "" : ", " + transmission.detail))));
     how("Computed from the values of the drive and its parts, which stand below with their sources.");
-    body_ += "<div class=\"card pair\">";
+    add("<div class=\"card pair\">");
     for (const DriveFigure& figure : drive.figures) {
       std::string name = figure.name;
       name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-      body_ += fmt::format("<dl><dt>{}</dt><dd>{}</dd></dl>", escaped(name),
-                           escaped(readable(figure.value, figure.unit)));
+      add(fmt::format("<dl><dt>{}</dt><dd>{}</dd></dl>", escaped(name),
+                      escaped(readable(figure.value, figure.unit))));
     }
-    body_ += "</div>\n";
+    add("</div>\n");
     show_figures(fmt::format("drive-{}", i));
     std::string rows =
         "<tr><th>Margin</th><th class=\"n\">Demand</th><th class=\"n\">Limit</th><th "
@@ -698,8 +454,8 @@ class Page {
           cell(margin.utilisation ? fmt::format("{} %", number(100.0 * *margin.utilisation, 3)) : "–", "n") +
           cell(margin.ok ? "✓" : "✗", margin.ok ? "ok" : "no") + cell(margin.rule, "source") + "</tr>\n";
     }
-    body_ += fmt::format(
-        "<h3>Margins</h3><div class=\"scroll\"><table>{}</table></div>\n<h3>Values of the drive</h3>\n", rows);
+    add(fmt::format(
+        "<h3>Margins</h3><div class=\"scroll\"><table>{}</table></div>\n<h3>Values of the drive</h3>\n", rows));
     const std::string table = fmt::format("drive[{}]", i);
     values_table(
         [&](const DescribedValue& value) {
@@ -711,9 +467,9 @@ class Page {
   template <class Part>
   void part(const Part& part) {
     if (!seen_.insert(part.info.name).second) return;
-    body_ += fmt::format(
+    add(fmt::format(
         "<details><summary>{} <span class=\"how\">({})</span></summary><p class=\"how\">Source: {}</p>",
-        escaped(part.info.title), part_kind<Part>(), escaped(part.info.source));
+        escaped(part.info.title), part_kind<Part>(), escaped(part.info.source)));
     std::string rows = "<tr><th>Quantity</th><th class=\"n\">Value</th><th>Where it comes from</th></tr>";
     for (const PartValue& value : part_values(part)) {
       std::string meaning = value.meaning;
@@ -724,7 +480,7 @@ class Page {
                           given(value.value) ? source_cell(value.source, value.source.starts_with("chosen"))
                                              : "<td class=\"source\">no value in the source</td>");
     }
-    body_ += fmt::format("<div class=\"scroll\"><table>{}</table></div></details>\n", rows);
+    add(fmt::format("<div class=\"scroll\"><table>{}</table></div></details>\n", rows));
   }
 
   void parts() {
@@ -744,7 +500,7 @@ class Page {
     section("sources", "What is chosen, and what is not given");
     std::string chosen;
     std::string missing;
-    for (const DescribedValue& value : values_) {
+    for (const DescribedValue& value : values()) {
       const std::string item = fmt::format("<li><code>{}.{}</code> {}</li>", escaped(value.table),
                                            escaped(value.key), escaped(value.meaning));
       if (!value.given()) {
@@ -753,27 +509,20 @@ class Page {
         chosen += item;
       }
     }
-    body_ +=
-        chosen.empty()
+    add(chosen.empty()
             ? "<p>Every value comes from a source.</p>\n"
             : fmt::format(
                   "<p>No source gives these values; they were chosen by the author of the device file, and "
                   "what follows from them (inertia, for instance) is no better than they are:</p><ul>{}</ul>\n",
-                  chosen);
+                  chosen));
     if (!missing.empty())
-      body_ += fmt::format("<p>Not given, and not needed for the figures above:</p><ul>{}</ul>\n", missing);
-    body_ += "</section>\n";
+      add(fmt::format("<p>Not given, and not needed for the figures above:</p><ul>{}</ul>\n", missing));
+    add("</section>\n");
   }
 
   const DataSheet& sheet_;
   const Description& description_;
-  const std::vector<SheetFigure>& figures_;
-  const std::vector<std::string>& overrides_;
-  std::vector<DescribedValue> values_;
-  std::vector<std::pair<std::string, std::string>> contents_;
   std::set<std::string> seen_;
-  std::string body_;
-  std::string rows_;
 };
 
 }  // namespace

@@ -57,7 +57,8 @@ Json workspace_json(const WorkspaceSheet& workspace) {
   entry["lattice"] = {{"spacing", json_number(workspace.sweep.spacing)},
                       {"points", workspace.sweep.lattice_points},
                       {"inside", workspace.sweep.inside},
-                      {"volume", json_number(workspace.sweep.volume)}};
+                      {"volume", json_number(workspace.sweep.volume)},
+                      {"error", json_number(counting_error(workspace.volume, workspace.sweep))}};
   Json ranges;
   for (size_t k = 0; k < 3; ++k)
     ranges[std::string(1, static_cast<char>('x' + k))] = json_interval(workspace.extents.range[k]);
@@ -84,7 +85,8 @@ Json plane_json(const PlaneSheet& plane) {
   entry["lattice"] = {{"spacing", json_number(plane.sweep.spacing)},
                       {"points", plane.sweep.lattice_points},
                       {"inside", plane.sweep.inside},
-                      {"area", json_number(plane.sweep.area)}};
+                      {"area", json_number(plane.sweep.area)},
+                      {"error", json_number(counting_error(plane.area, plane.sweep))}};
   entry["ranges"] = {{"x", json_interval(plane.extents.range[0])},
                      {"y", json_interval(plane.extents.range[1])}};
   const InscribedShape &circle = plane.inscribed.circle(), &square = plane.inscribed.square();
@@ -246,17 +248,31 @@ Json dexterous_json(const DexterousRegion& region) {
           {"annulus", region.annulus ? json_interval(*region.annulus) : Json(nullptr)}};
 }
 
-Json statistic_json(const Statistic& statistic) {
+namespace {
+
+template <class Statistic>
+Json statistic_entry(const Statistic& statistic) {
   if (statistic.count == 0) return nullptr;
+  const bool endless = statistic.unbounded || !std::isfinite(statistic.max);
   Json entry;
   entry["min"] = json_number(statistic.min);
-  entry["max"] = json_number(statistic.max);
-  entry["mean"] = json_number(statistic.mean);
+  entry["max"] = endless ? Json(nullptr) : json_number(statistic.max);
+  entry["mean"] = endless && statistic.median ? Json(nullptr) : json_number(statistic.mean);
+  if (statistic.median) entry["median"] = json_number(*statistic.median);
+  if (statistic.percentile_95) entry["percentile_95"] = json_number(*statistic.percentile_95);
   entry["min_at"] = json_array(statistic.min_at);
   entry["max_at"] = json_array(statistic.max_at);
-  if (!std::isfinite(statistic.max) || !std::isfinite(statistic.min))
-    entry["note"] = "unbounded: a singularity lies in the workspace";
+  if (endless) entry["unbounded"] = true;
   return entry;
+}
+
+}  // namespace
+
+Json statistic_json(const Statistic& statistic) {
+  return statistic_entry(statistic);
+}
+Json statistic_json(const PostureStatistic& statistic) {
+  return statistic_entry(statistic);
 }
 
 Json margin_json(const Margin& margin) {
@@ -305,7 +321,7 @@ Json data_sheet_json(const DataSheet& sheet, const Description& description) {
     document[key] = nullptr;
     notes[key] = why;
   };
-  document["arm"] = sheet.arm ? arm_json(*sheet.arm) : Json(nullptr);
+  document["arm"] = sheet.arm ? arm_json(sheet) : Json(nullptr);
   if (!sheet.arm) notes["arm"] = "of a tool that also turns";
   if (sheet.workspace) {
     document["workspace"] = workspace_json(*sheet.workspace);
@@ -326,16 +342,20 @@ Json data_sheet_json(const DataSheet& sheet, const Description& description) {
   } else {
     absent("forces", "needs a drive on every active joint, and a workspace");
   }
-  if (sheet.inertia) {
-    document["inertia"] = {{"spacing", json_number(sheet.inertia->spacing)},
-                           {"axis", axes_json(sheet.inertia->along_axes)},
-                           {"lightest", statistic_json(sheet.inertia->lightest)},
-                           {"heaviest", statistic_json(sheet.inertia->heaviest)},
-                           {"gravity_torque", statistic_json(sheet.inertia->gravity_torque)}};
+  if (sheet.mechanics && knows_inertia(sheet.mechanics->sweep)) {
+    const MechanicalSweep& sweep = sheet.mechanics->sweep;
+    document["inertia"] = {{"spacing", json_number(sweep.spacing)},
+                           {"axis", axes_json({sweep[MechanicalFigure::mass_x], sweep[MechanicalFigure::mass_y],
+                                               sweep[MechanicalFigure::mass_z]})},
+                           {"lightest", statistic_json(sweep[MechanicalFigure::lightest])},
+                           {"heaviest", statistic_json(sweep[MechanicalFigure::heaviest])},
+                           {"gravity_torque", statistic_json(sweep[MechanicalFigure::gravity_torque])}};
   } else {
-    absent("inertia", "nothing has mass");
+    absent("inertia", sheet.arm ? "of a tool that also turns see mechanics" : "nothing has mass");
   }
-  document["mechanics"] = sheet.mechanics ? mechanics_json(sheet.mechanics->sweep) : Json(nullptr);
+  document["mechanics"] = sheet.mechanics               ? mechanics_json(sheet.mechanics->sweep)
+                          : sheet.mechanics_of_postures ? mechanics_json(*sheet.mechanics_of_postures)
+                                                        : Json(nullptr);
   if (sheet.stiffness) {
     document["stiffness"] = stiffness_json(*sheet.stiffness);
   } else {

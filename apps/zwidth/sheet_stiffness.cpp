@@ -2,52 +2,50 @@
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <numbers>
 
+#include "mechanics.h"
+#include "sheet_json.h"
+#include "statistic_text.h"
 #include "terminal.h"
 
 #include "zwidth/mechanism/beam_link.h"
 
 namespace zwidth {
+namespace {}  // namespace
+
 namespace {
 
-constexpr double kHertz = 0.5 / std::numbers::pi;
-
-std::vector<std::string> row(const std::string& name, const PostureStatistic& statistic, double factor,
-                             const std::string& unit) {
-  return {name, number(statistic.min * factor), number(statistic.mean * factor), number(statistic.max * factor),
-          unit};
-}
-
-Json statistic_entry(const PostureStatistic& statistic) {
-  if (statistic.count == 0) return nullptr;
-  Json entry;
-  entry["min"] = json_number(statistic.min);
-  entry["max"] = json_number(statistic.max);
-  entry["mean"] = json_number(statistic.mean);
-  entry["min_at"] = json_array(statistic.min_at);
-  entry["max_at"] = json_array(statistic.max_at);
-  return entry;
+template <class Sweep>
+std::vector<std::vector<std::string>> rows_over(const Sweep& sweep) {
+  std::vector<std::vector<std::string>> rows;
+  const auto add = [&](const char* label, MechanicalFigure which) {
+    const ShownUnit shown = shown_unit(which);
+    if (sweep[which].count > 0)
+      rows.push_back(statistic_cells(label, sweep[which], shown.factor, shown.unit, true));
+  };
+  add("stiffness along x", MechanicalFigure::stiffness_x);
+  add("stiffness along y", MechanicalFigure::stiffness_y);
+  add("stiffness along z", MechanicalFigure::stiffness_z);
+  add("in the softest direction", MechanicalFigure::softest);
+  add("in the stiffest direction", MechanicalFigure::stiffest);
+  add("lowest natural frequency, motors held", MechanicalFigure::frequency_held);
+  add("the same, motors free", MechanicalFigure::frequency_free);
+  return rows;
 }
 
 }  // namespace
 
 std::vector<std::vector<std::string>> stiffness_rows(const DataSheet& sheet) {
-  std::vector<std::vector<std::string>> rows;
-  if (!sheet.stiffness) return rows;
-  const StiffnessSheet& stiffness = *sheet.stiffness;
-  const char* axes = "xyz";
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (stiffness.along[k].count > 0)
-      rows.push_back(row(fmt::format("stiffness along {}", axes[k]), stiffness.along[k], 1e-3, "N/mm"));
-  }
-  rows.push_back(row("in the softest direction", stiffness.softest, 1e-3, "N/mm"));
-  rows.push_back(row("in the stiffest direction", stiffness.stiffest, 1e-3, "N/mm"));
-  if (stiffness.lowest_held.count > 0)
-    rows.push_back(row("lowest natural frequency, motors held", stiffness.lowest_held, kHertz, "Hz"));
-  if (stiffness.lowest_free.count > 0)
-    rows.push_back(row("the same, motors free", stiffness.lowest_free, kHertz, "Hz"));
-  return rows;
+  if (sheet.mechanics) return rows_over(sheet.mechanics->sweep);
+  if (sheet.mechanics_of_postures) return rows_over(*sheet.mechanics_of_postures);
+  return {};
+}
+
+std::string stiffness_over(const DataSheet& sheet) {
+  if (sheet.mechanics)
+    return fmt::format("over a lattice of {}", readable(sheet.mechanics->sweep.spacing, "m", 3));
+  return sheet.mechanics_of_postures ? fmt::format("over {} postures", sheet.mechanics_of_postures->solved)
+                                     : "";
 }
 
 std::string give_text(const StiffnessSheet& stiffness) {
@@ -65,14 +63,11 @@ std::string give_text(const StiffnessSheet& stiffness) {
 
 std::string stiffness_how(const StiffnessSheet& stiffness) {
   return fmt::format(
-      "Force per displacement of the tool under a pure force, motors standing still; {} give way{}. Over {} "
-      "postures, "
-      "spread evenly over the joint ranges.",
+      "Force per displacement of the tool under a pure force, motors standing still; {} give way{}.",
       to_string(stiffness.of),
       stiffness.of == Elasticity::links    ? ", the drives count as rigid"
       : stiffness.of == Elasticity::drives ? ", the links count as rigid"
-                                           : "",
-      stiffness.postures);
+                                           : "");
 }
 
 std::vector<std::string> not_given(const DataSheet& sheet) {
@@ -127,12 +122,12 @@ Json stiffness_json(const StiffnessSheet& stiffness) {
   document["postures"] = stiffness.postures;
   Json axis;
   const char* names[] = {"x", "y", "z"};
-  for (std::size_t k = 0; k < 3; ++k) axis[names[k]] = statistic_entry(stiffness.along[k]);
+  for (std::size_t k = 0; k < 3; ++k) axis[names[k]] = statistic_json(stiffness.along[k]);
   document["axis"] = axis;
-  document["softest"] = statistic_entry(stiffness.softest);
-  document["stiffest"] = statistic_entry(stiffness.stiffest);
-  document["lowest_frequency"] = {{"held", statistic_entry(stiffness.lowest_held)},
-                                  {"free", statistic_entry(stiffness.lowest_free)}};
+  document["softest"] = statistic_json(stiffness.softest);
+  document["stiffest"] = statistic_json(stiffness.stiffest);
+  document["lowest_frequency"] = {{"held", statistic_json(stiffness.lowest_held)},
+                                  {"free", statistic_json(stiffness.lowest_free)}};
   Json shares = Json::array();
   for (const GiveShare& one : stiffness.shares) {
     shares.push_back(

@@ -13,8 +13,10 @@
 
 namespace zwidth {
 
-/// Rows of name, least, mean, most and unit. Empty without a stiffness.
+/// Rows of `statistic_cells` with quantiles. Empty without a stiffness.
 std::vector<std::vector<std::string>> stiffness_rows(const DataSheet& sheet);
+/// "over a lattice of 5.00 mm": what those rows are over.
+std::string stiffness_over(const DataSheet& sheet);
 
 /// Which parts give way, and by what share: "44 % leg1/elbow1, 30 % leg1/swing1, ...".
 std::string give_text(const StiffnessSheet& stiffness);

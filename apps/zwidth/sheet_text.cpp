@@ -11,6 +11,7 @@
 #include "model.h"
 #include "sheet_arm.h"
 #include "sheet_stiffness.h"
+#include "statistic_text.h"
 
 #include "zwidth/description/units.h"
 #include "zwidth/description/values.h"
@@ -85,7 +86,7 @@ class SheetText {
     if (sheet_.workspace) dexterity(sheet_.workspace->sweep, 3);
     if (sheet_.plane) dexterity(sheet_.plane->sweep, 2);
     if (sheet_.continuous && sheet_.peak) forces();
-    if (sheet_.inertia) inertia(*sheet_.inertia);
+    if (sheet_.mechanics && knows_inertia(sheet_.mechanics->sweep)) inertia(sheet_.mechanics->sweep);
     stiffness();
     resolution();
     for (const DriveSheet& drive : sheet_.drives) drive_section(drive);
@@ -143,8 +144,9 @@ class SheetText {
               fmt::format("{}, within {}", integral ? "integral of |det J|" : "counted on a lattice",
                           quantity(workspace.volume.error_estimate, 1e6, "cm³", 1)));
     text_.row("", quantity(workspace.sweep.volume, 1e6, "cm³", 5),
-              fmt::format("{} points of a {} lattice", workspace.sweep.inside,
-                          format_quantity(workspace.sweep.spacing, Dimension::length)));
+              fmt::format("{} points of a {} lattice, within {}", workspace.sweep.inside,
+                          format_quantity(workspace.sweep.spacing, Dimension::length),
+                          quantity(counting_error(workspace.volume, workspace.sweep), 1e6, "cm³", 1)));
     for (size_t k = 0; k < 3; ++k) {
       const Interval& range = workspace.extents.range[k];
       text_.row(fmt::format("range of {}", static_cast<char>('x' + k)),
@@ -245,51 +247,48 @@ class SheetText {
     };
     if (arm.pose) {
       facts("Workspace in one orientation", pose_facts(*arm.pose));
+      facts("Forces in one orientation, continuous", pose_load_facts(*arm.pose));
+      facts("Workspace in any orientation", any_orientation_facts(*arm.pose));
       if (arm.pose->reached) facts("Turned at home", turning_facts(arm.pose->turning));
     }
     facts(arm.pose ? "Reach of the tool point in any orientation" : "Reach of the tool point",
           reach_facts(arm, Mechanism(description_)));
     facts("Orientations of the tool", orientation_facts(arm.orientations, home_turning(arm)));
     facts("Home posture", home_facts(arm, Mechanism(description_)));
-    for (const PostureTable& table : arm_tables(arm, Mechanism(description_), sheet_.joint_slides)) {
+    for (const PostureTable& table : arm_tables(sheet_, Mechanism(description_))) {
       text_.heading(table.title);
       std::vector<std::vector<std::string>> rows;
-      for (const PostureRow& row : table.rows) {
-        rows.push_back({row.name, number(row.statistic->min * row.factor),
-                        number(row.statistic->mean * row.factor), number(row.statistic->max * row.factor),
-                        row.unit});
-      }
-      text_.table({"", "min", "mean", "max", ""}, rows);
+      for (const PostureRow& row : table.rows)
+        rows.push_back(statistic_cells(row.name, *row.statistic, row.factor, row.unit, table.quantiles));
+      text_.table(statistic_heads("", table.quantiles), rows);
       text_.paragraph(table.how, 2, Tint::dim);
+      const std::string note = rows_note(rows, table.quantiles);
+      if (!note.empty()) text_.paragraph(note, 2, Tint::dim);
     }
   }
 
-  static std::vector<std::string> cells(const std::string& label, const Statistic& statistic, double factor,
-                                        const std::string& unit) {
-    if (statistic.count == 0) return {label, "–", "–", "–", unit};
-    return {label, number(statistic.min * factor), number(statistic.mean * factor),
-            number(statistic.max * factor), unit};
-  }
-
-  /// Extremes and mean, which a finer lattice would move a little.
-  void statistics(const std::vector<std::vector<std::string>>& rows, double spacing) {
-    text_.table({fmt::format("over a lattice of {}", format_quantity(spacing, Dimension::length)), "min",
-                 "mean", "max", ""},
-                rows);
+  void statistics(const std::vector<std::vector<std::string>>& rows, double spacing, bool quantiles = false) {
+    text_.table(
+        statistic_heads(fmt::format("over a lattice of {}", format_quantity(spacing, Dimension::length)),
+                        quantiles),
+        rows);
+    const std::string note = rows_note(rows, quantiles);
+    if (!note.empty()) text_.paragraph(note, 2, Tint::dim);
   }
 
   void dexterity(const LatticeSweep& sweep, int dimension) {
     text_.heading("Dexterity over the workspace");
     std::vector<std::vector<std::string>> rows;
-    rows.push_back(cells("condition number", sweep[Figure::condition_number], 1.0, ""));
+    rows.push_back(statistic_cells("condition number", sweep[Figure::condition_number], 1.0, ""));
     double factor = 1.0;
     const std::string unit = manipulability_unit(Mechanism(description_), dimension, factor);
-    rows.push_back(cells("manipulability", sweep[Figure::manipulability], factor, unit));
+    rows.push_back(statistic_cells("manipulability", sweep[Figure::manipulability], factor, unit));
     if (sweep[Figure::leg_singularity].count > 0)
-      rows.push_back(cells("leg singularity (0 = singular)", sweep[Figure::leg_singularity], 1.0, ""));
+      rows.push_back(
+          statistic_cells("leg singularity (0 = singular)", sweep[Figure::leg_singularity], 1.0, ""));
     if (sweep[Figure::platform_singularity].count > 0) {
-      rows.push_back(cells(dimension == 2 ? "coupler singularity" : "platform singularity",
-                           sweep[Figure::platform_singularity], 1.0, ""));
+      rows.push_back(statistic_cells(dimension == 2 ? "coupler singularity" : "platform singularity",
+                                     sweep[Figure::platform_singularity], 1.0, ""));
     }
     statistics(rows, sweep.spacing);
     if (!sheet_.conditioning) return;
@@ -315,10 +314,11 @@ class SheetText {
          {std::pair{"continuous", &*sheet_.continuous}, std::pair{"peak", &*sheet_.peak}}) {
       const char* axes = "xyz";
       for (size_t k = 0; k < axis_count(); ++k) {
-        rows.push_back(cells(fmt::format("{}, along {}", name, axes[k]), forces->axes[k], 1.0, "N"));
+        rows.push_back(statistic_cells(fmt::format("{}, along {}", name, axes[k]), forces->axes[k], 1.0, "N"));
       }
-      rows.push_back(cells(fmt::format("{}, in every direction", name), forces->weakest, 1.0, "N"));
-      rows.push_back(cells(fmt::format("{}, in the best direction", name), forces->strongest, 1.0, "N"));
+      rows.push_back(statistic_cells(fmt::format("{}, in every direction", name), forces->weakest, 1.0, "N"));
+      rows.push_back(
+          statistic_cells(fmt::format("{}, in the best direction", name), forces->strongest, 1.0, "N"));
     }
     statistics(rows, lattice_spacing());
     const auto torque = [this](const ForceSheet& forces) {
@@ -331,28 +331,17 @@ class SheetText {
         2, Tint::dim);
   }
 
-  void inertia(const InertiaSweep& inertia) {
+  void inertia(const MechanicalSweep& sweep) {
     text_.heading("Inertia felt at the tool");
-    std::vector<std::vector<std::string>> rows;
-    const char* axes = "xyz";
-    for (size_t k = 0; k < axis_count(); ++k)
-      rows.push_back(cells(fmt::format("apparent mass along {}", axes[k]), inertia.along_axes[k], kMilli, "g"));
-    rows.push_back(cells("in the lightest direction", inertia.lightest, kMilli, "g"));
-    rows.push_back(cells("in the heaviest direction", inertia.heaviest, kMilli, "g"));
-    const bool slides = all_slide(sheet_.joint_slides);
-    rows.push_back(cells(slides ? "force against gravity" : "torque against gravity", inertia.gravity_torque,
-                         slides ? 1.0 : kMilli, slides ? "N" : "mN m"));
-    statistics(rows, inertia.spacing);
-    if (sheet_.mechanics) {
-      const std::string text = acceleration_text(sheet_.mechanics->sweep, sheet_.plane.has_value());
-      if (!text.empty()) text_.paragraph(text, 2);
-    }
+    statistics(inertia_rows(sweep, sheet_.joint_slides), sweep.spacing, true);
+    const std::string text = acceleration_text(sweep, sheet_.plane.has_value());
+    if (!text.empty()) text_.paragraph(text, 2);
   }
 
   void stiffness() {
     text_.heading("Stiffness at the tool");
     if (sheet_.stiffness) {
-      text_.table({"over postures", "min", "mean", "max", ""}, stiffness_rows(sheet_));
+      text_.table(statistic_heads(stiffness_over(sheet_), true), stiffness_rows(sheet_));
       text_.paragraph(stiffness_how(*sheet_.stiffness), 2, Tint::dim);
       text_.paragraph("What gives way: " + give_text(*sheet_.stiffness) + ".", 2);
     }
@@ -370,7 +359,8 @@ class SheetText {
     std::vector<std::vector<std::string>> rows;
     const char* axes = "xyz";
     for (size_t k = 0; k < axis_count(); ++k)
-      rows.push_back(cells(fmt::format("smallest step along {}", axes[k]), sheet_.resolution[k], 1e6, "µm"));
+      rows.push_back(
+          statistic_cells(fmt::format("smallest step along {}", axes[k]), sheet_.resolution[k], 1e6, "µm"));
     statistics(rows, lattice_spacing());
     if (sheet_.middle && sheet_.middle->force_resolution) {
       std::string steps;

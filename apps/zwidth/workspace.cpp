@@ -9,6 +9,7 @@
 #include <mutex>
 #include <sstream>
 
+#include "efforts.h"
 #include "figure/svg.h"
 #include "gnuplot.h"
 #include "interrupt.h"
@@ -16,6 +17,7 @@
 #include "model.h"
 #include "sheet_json.h"
 #include "sheet_text.h"
+#include "statistic_text.h"
 #include "verbs.h"
 #include "workspace_verb.h"
 
@@ -106,7 +108,10 @@ Drawn drawn_of(const WorkspaceArguments& arguments, const Model& model) {
     const FigureInfo& info = mechanical_figure_info(k);
     known.emplace_back(info.name);
     if (info.name != arguments.of) continue;
-    const ShownUnit shown = shown_unit(static_cast<MechanicalFigure>(k));
+    bool slides = true;
+    for (int i = 0; i < model.mechanism.active_count(); ++i)
+      slides = slides && joint_slides(model.mechanism, i);
+    const ShownUnit shown = shown_unit(static_cast<MechanicalFigure>(k), slides);
     return {true, k, fmt::format("{} [{}]", info.meaning, shown.unit), shown.factor};
   }
   throw InputError(
@@ -132,9 +137,37 @@ Interval drawn_range(const std::vector<std::vector<double>>& cuts) {
   return range.width() > 1e-6 * std::abs(range.max) ? range : Interval{0.9 * range.max, 1.1 * range.max};
 }
 
+void refuse_unknown_figure(const WorkspaceArguments& arguments, const Drawn& drawn, const Model& model,
+                           const std::vector<std::vector<double>>& cuts, const SliceMap& map,
+                           const MechanicalSweep& mechanics) {
+  const auto any = [](const std::vector<double>& values) {
+    return std::ranges::any_of(values, [](double value) { return std::isfinite(value); });
+  };
+  const auto of_drives = [](int k) { return figure_info(k).unit == "N" || figure_info(k).unit == "m"; };
+  const bool undriven = !drawn.mechanical && of_drives(drawn.index) && !model.driven();
+  if (!undriven && std::ranges::any_of(cuts, any)) return;
+  std::string known;
+  const auto add = [&known](std::string_view name) {
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", name);
+  };
+  for (int k = 0; k < kFigureCount; ++k) {
+    if (any(map.values[static_cast<size_t>(k)]) && (model.driven() || !of_drives(k))) add(figure_info(k).name);
+  }
+  for (int k = 0; k < kMechanicalFigureCount; ++k) {
+    if (mechanics.figures[static_cast<size_t>(k)].count > 0) add(mechanical_figure_info(k).name);
+  }
+  const bool elastic = drawn.mechanical && drawn.index <= static_cast<int>(MechanicalFigure::stiffest);
+  const char* why = undriven ? ", some joints of which have no drive"
+                    : elastic && !mechanics.of
+                        ? ", whose file gives neither sections of the links nor the stiffness of every drive"
+                        : "";
+  throw InputError(fmt::format("--of {}: is not known of {}{}; known are {}", arguments.of,
+                               model.description.name, why, known));
+}
+
 MechanicalSweep mechanics_of(const Model& model, const Extents& extents, double spacing, const Effort& effort) {
-  constexpr double kPoints = 20'000.0;
-  return sweep_mechanics(model.mechanism, model.drives, fitting_spacing(extents, spacing, kPoints), effort);
+  return sweep_mechanics(model.mechanism, model.drives, fitting_spacing(extents, spacing, kMechanicalPoints),
+                         effort);
 }
 
 void read_figures(const LatticeSweep& sweep, const Mechanism& mechanism, bool all, bool driven, Json& document,
@@ -161,8 +194,7 @@ void read_figures(const LatticeSweep& sweep, const Mechanism& mechanism, bool al
     double factor = 1.0;
     const std::string unit = key == "manipulability" ? manipulability_unit(mechanism, dimension, factor)
                                                      : statistics_factor(info.unit, factor);
-    rows.push_back({std::string(info.name), number(statistic.min * factor), number(statistic.mean * factor),
-                    number(statistic.max * factor), unit});
+    rows.push_back(statistic_cells(std::string(info.name), statistic, factor, unit));
     std::replace(rows.back()[0].begin(), rows.back()[0].end(), '_', ' ');
   }
   document["figures"] = figures;
@@ -210,86 +242,29 @@ void refuse_wide_lattice(const WorkspaceArguments& arguments, const LatticeSweep
       arguments.grid, widths, trimmed(rounded, 1)));
 }
 
-namespace {
+Effort StagedProgress::next(double share) {
+  const double from = done_;
+  done_ += share;
+  Effort effort;
+  effort.cancel = cancel_;
+  effort.progress = [this, from, share](double fraction) {
+    const std::lock_guard lock(mutex_);
+    progress_.update(100.0 * (from + share * fraction), 100.0);
+  };
+  return effort;
+}
 
-/// What the hand alone moves does not decide where a tool that is a point can be.
 Description without_hand_joints(const Description& description) {
   const auto* arm = std::get_if<SerialDescription>(&description.mechanism);
   const bool point = arm != nullptr && arm->platform == PlatformFreedom::point;
   return point ? without_free_joints(description) : description;
 }
 
-/// Two devices on common cells. Throws InputError if they are not of one kind.
-int compare(const WorkspaceArguments& arguments, const Model& model, double spacing, const Terminal& terminal) {
-  DeviceArguments wanted;
-  wanted.device = arguments.against;
-  const Model other(without_hand_joints(read_device(wanted)));
-  const std::string first = model.description.name, second = other.description.name == first
-                                                                 ? other.description.name + " (as it comes)"
-                                                                 : other.description.name;
-  if (const auto obstacle = comparison_obstacle(model.mechanism))
-    throw InputError(fmt::format("{}: {}", arguments.device, *obstacle));
-  if (const auto obstacle = comparison_obstacle(other.mechanism))
-    throw InputError(fmt::format("--against {}: {}", arguments.against, *obstacle));
-  const bool plane = in_plane(model.mechanism);
-  if (plane != in_plane(other.mechanism)) {
-    throw InputError(
-        fmt::format("--against {}: one tool moves in a plane and the other in space; name two devices "
-                    "of one kind",
-                    arguments.against));
-  }
-  WorkspaceComparison comparison;
-  try {
-    Effort effort;
-    effort.cancel = &stop_on_interrupt();
-    comparison = compare_workspaces(model.mechanism, other.mechanism, {.spacing = spacing}, effort);
-  } catch (const std::length_error& error) {
-    throw InputError(fmt::format("--grid {}: {}; take a coarser grid", arguments.grid, error.what()));
-  }
-  const std::array<std::pair<const char*, Measure>, 5> figures = {{{"first", comparison.first},
-                                                                   {"second", comparison.second},
-                                                                   {"both", comparison.both},
-                                                                   {"only_first", comparison.only_first},
-                                                                   {"only_second", comparison.only_second}}};
-  if (!comparison.complete) complain("stopped before the end: the figures cover a part of the workspace only");
-  const int exit = comparison.complete ? kDone : kNo;
-  if (arguments.json) {
-    Json document;
-    document["device"] = first;
-    document["against"] = other.description.name;
-    document["grid"] = json_number(comparison.spacing);
-    document["complete"] = comparison.complete;
-    document["measure"] = plane ? "area" : "volume";
-    for (const auto& [key, measure] : figures)
-      document[key] = {{"value", json_number(measure.value)}, {"error", json_number(measure.error)}};
-    document["gain"] = json_number(comparison.gain());
-    print_json(document);
-    return exit;
-  }
-  Sheet sheet(terminal);
-  sheet.title(fmt::format("{} against {}", first, second),
-              fmt::format("common cells of {}", format_quantity(comparison.spacing, Dimension::length)));
-  const double factor = plane ? 1e4 : 1e6;
-  const char* unit = plane ? "cm²" : "cm³";
-  const std::array<std::string, 5> names = {first, second, "both", "only " + first, "only " + second};
-  std::vector<std::vector<std::string>> rows;
-  for (size_t f = 0; f < figures.size(); ++f) {
-    const Measure& measure = figures[f].second;
-    rows.push_back({names[f], quantity(measure.value, factor, unit, 5),
-                    "± " + quantity(measure.error, factor, unit, 2),
-                    comparison.second.value > 0.0
-                        ? fmt::format("{} %", number(100.0 * measure.value / comparison.second.value, 4))
-                        : "–"});
-  }
-  sheet.table({plane ? "reachable area" : "reachable volume", "", "", "of " + second}, rows);
-  print(sheet.text());
-  return exit;
-}
+namespace {
 
 /// Three cuts with their condition number, and the surface, on one sheet.
-void draw(const Model& model, const Extents& extents, const DriveLimits& limits, const Drawn& drawn,
-          const std::string& path) {
-  std::string script = gnuplot_terminal(path, 1000.0, 860.0);
+void draw(const WorkspaceArguments& arguments, const Model& model, const Extents& extents,
+          const DriveLimits& limits, const Drawn& drawn, const MechanicalSweep& mechanics) {
   const char* axes = "xyz";
   std::vector<SliceMap> maps;
   std::vector<std::vector<double>> values;
@@ -298,7 +273,9 @@ void draw(const Model& model, const Extents& extents, const DriveLimits& limits,
                              extents.range[static_cast<size_t>(normal)].middle(), 161, limits));
     values.push_back(drawn_values(drawn, model, maps.back()));
   }
+  refuse_unknown_figure(arguments, drawn, model, values, maps.front(), mechanics);
   const Interval range = drawn_range(values);
+  std::string script = gnuplot_terminal(arguments.figure, 1000.0, 860.0);
   for (size_t i = 0; i < maps.size(); ++i) {
     script += gnuplot_block(values[i], maps[i].nu, fmt::format("map{}", i));
     script += gnuplot_outlines(maps[i].slice, fmt::format("edge{}", i));
@@ -354,10 +331,14 @@ void draw(const Model& model, const Extents& extents, const DriveLimits& limits,
 }
 
 int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
-  const ParsedQuantity grid = parse_quantity(arguments.grid, Dimension::length);
-  if (!grid) throw InputError(fmt::format("--grid \"{}\": {}; {}", arguments.grid, grid.rule, grid.advice));
-  if (*grid.value <= 0.0)
-    throw InputError(fmt::format("--grid \"{}\": must be positive; for example --grid 1mm", arguments.grid));
+  double asked = 0.0;
+  if (!arguments.grid.empty()) {
+    const ParsedQuantity grid = parse_quantity(arguments.grid, Dimension::length);
+    if (!grid) throw InputError(fmt::format("--grid \"{}\": {}; {}", arguments.grid, grid.rule, grid.advice));
+    if (*grid.value <= 0.0)
+      throw InputError(fmt::format("--grid \"{}\": must be positive; for example --grid 1mm", arguments.grid));
+    asked = *grid.value;
+  }
   if (!arguments.map.empty() && !arguments.map.ends_with(".npy") && !arguments.map.ends_with(".csv")) {
     throw InputError(fmt::format("--map {}: must end in .csv or .npy", arguments.map));
   }
@@ -368,7 +349,6 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
   const Description described = read_device(arguments);
   const Model model(without_hand_joints(described));
   const Drawn drawn = drawn_of(arguments, model);
-  const double asked = arguments.grid_given ? *grid.value : 0.0;
   if (!arguments.against.empty()) return compare(arguments, model, asked, terminal);
   const bool orientation = !arguments.orientation.empty() || !arguments.rotation.empty();
   if (orientation && pose_workspace_obstacle(model.mechanism)) {
@@ -388,54 +368,39 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
   }
   if (in_plane(model.mechanism) && !arguments.position.empty())
     throw InputError("--position tells how a tool can be turned, and that of a plane cannot");
-  if (in_plane(model.mechanism)) return plane_workspace(arguments, model, *grid.value, terminal);
+  if (in_plane(model.mechanism)) return plane_workspace(arguments, model, asked, terminal);
   const bool driven = model.driven();
+  StagedProgress progress(&stop_on_interrupt());
+  const Extents extents = workspace_extents(model.mechanism);
   LatticeOptions options;
-  options.spacing = *grid.value;
+  options.spacing = asked > 0.0 ? asked : suitable_spacing(model.mechanism, extents);
   options.all_figures = arguments.all;
   options.limits = drive_limits(model.drives, false);
-  Effort effort;
-  effort.cancel = &stop_on_interrupt();
-  const Extents extents = workspace_extents(model.mechanism);
-  double points = 1.0;
-  for (const Interval& range : extents.range) points *= std::floor(range.width() / options.spacing) + 1.0;
   LatticeSweep sweep;
-  {
-    Progress progress("workspace", "points");
-    std::mutex mutex;
-    effort.progress = [&](double fraction) {
-      const std::lock_guard lock(mutex);
-      progress.update(fraction * points, points);
-    };
-    try {
-      sweep = sweep_workspace(model.mechanism, options, effort);
-    } catch (const std::length_error& error) {
-      throw InputError(fmt::format("--grid {}: {}; take a coarser grid", arguments.grid, error.what()));
-    }
+  try {
+    sweep = sweep_workspace(model.mechanism, options, progress.next(0.4));
+  } catch (const std::length_error& error) {
+    throw InputError(fmt::format("--grid {}: {}; take a coarser grid", arguments.grid, error.what()));
   }
   refuse_wide_lattice(arguments, sweep, extents, false);
+  if (sweep.complete) refine_extremes(model.mechanism, options, sweep, progress.next(0.05));
   if (!arguments.map.empty() && sweep.complete) {
-    Progress progress("map", "points");
-    std::mutex mutex;
-    effort.progress = [&](double fraction) {
-      const std::lock_guard lock(mutex);
-      progress.update(fraction * points, points);
-    };
-    WorkspaceMap map = map_workspace(model.mechanism, options, effort);
-    if (arguments.all && map.complete) add_mechanics(model.mechanism, model.drives, map, effort);
+    WorkspaceMap map = map_workspace(model.mechanism, options, progress.next(0.0));
+    if (arguments.all && map.complete) add_mechanics(model.mechanism, model.drives, map, progress.next(0.0));
     if (map.complete) write_map(map, arguments.map);
     sweep.complete = map.complete;
   }
+  std::optional<MechanicalSweep> mechanics;
+  if (sweep.complete) mechanics = mechanics_of(model, extents, options.spacing, progress.next(0.2));
   if (!arguments.figure.empty() && sweep.complete)
-    draw(model, extents, options.limits, drawn, arguments.figure);
+    draw(arguments, model, extents, options.limits, drawn, *mechanics);
   const WorkspaceVolume volume =
-      sweep.complete ? finer_count(workspace_volume(model.mechanism, effort), sweep) : WorkspaceVolume{};
+      sweep.complete ? finer_count(workspace_volume(model.mechanism, progress.next(0.15)), sweep)
+                     : WorkspaceVolume{};
   const InscribedShapes inscribed = sweep.complete ? inscribed_shapes(model.mechanism) : InscribedShapes{};
 
-  // What counting is off by is known where the volume is.
   const bool integral = volume.method == WorkspaceVolume::Method::integral;
-  const double counting_error =
-      volume.error_estimate + (integral ? std::abs(sweep.volume - volume.value) : 0.0);
+  const double miscounted = counting_error(volume, sweep);
 
   Json document;
   document["device"] = model.description.name;
@@ -448,7 +413,7 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
     document["volume"] = json_number(volume.value);
     document["volume_method"] = to_string(volume.method);
     document["volume_error"] = json_number(volume.error_estimate);
-    document["lattice_volume_error"] = json_number(counting_error);
+    document["lattice_volume_error"] = json_number(miscounted);
   }
   Json ranges;
   for (size_t k = 0; k < 3; ++k)
@@ -464,16 +429,14 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
   const Mechanism whole(with_turning_tool(described));
   std::optional<OrientationWorkspace> orientations;
   if (sweep.complete && !orientation_obstacle(whole)) {
-    const ReachMap reach = reach_map(whole, {.samples = 2'000'000}, {.cancel = effort.cancel});
-    orientations = orientation_workspace(whole, reach, {}, {.cancel = effort.cancel});
+    const ReachMap reach = reach_map(whole, {.samples = 2'000'000}, progress.next(0.0));
+    orientations = orientation_workspace(whole, reach, {}, progress.next(0.0));
   }
   const Turning turning = turning_of(arguments, whole, std::move(orientations));
   if (turning.orientations || turning.place) write_turning(turning, document);
   const WorkspaceConditioning conditioning =
-      sweep.complete ? sweep_conditioning(model.mechanism, 2.0 * options.spacing, {.cancel = effort.cancel})
+      sweep.complete ? sweep_conditioning(model.mechanism, 2.0 * options.spacing, progress.next(0.2))
                      : WorkspaceConditioning{};
-  std::optional<MechanicalSweep> mechanics;
-  if (sweep.complete) mechanics = mechanics_of(model, extents, options.spacing, {.cancel = effort.cancel});
   if (sweep.complete) {
     document["conditioning"] = conditioning_json(conditioning);
     document["mechanics"] = mechanics_json(*mechanics);
@@ -496,7 +459,7 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
   sheet.row("points inside", fmt::format("{}", sweep.inside),
             fmt::format("of {} in the box; {}{} by counting", sweep.lattice_points,
                         quantity(sweep.volume, 1e6, "cm³", 6),
-                        sweep.complete ? " ± " + quantity(counting_error, 1e6, "cm³", 1) : ""));
+                        sweep.complete ? " ± " + quantity(miscounted, 1e6, "cm³", 1) : ""));
   for (size_t k = 0; k < 3; ++k) {
     sheet.row(fmt::format("range of {}", static_cast<char>('x' + k)),
               interval(extents.range[k].min, extents.range[k].max, kMilli, "mm"),
@@ -510,7 +473,8 @@ int workspace(const WorkspaceArguments& arguments, const Terminal& terminal) {
   }
   print_turning(turning, sheet);
   sheet.heading("Figures over the workspace");
-  sheet.table({"", "min", "mean", "max", ""}, rows);
+  sheet.table(statistic_heads(""), rows);
+  if (any_unbounded(rows)) sheet.paragraph(rows_note(rows, false), 2, Tint::dim);
   if (sweep.complete) {
     print_conditioning(conditioning.of_all, sweep[Figure::condition_number], false, sheet);
   }
@@ -538,8 +502,9 @@ void add_workspace(CLI::App& app, Context& context) {
       "\nCtrl-C stops with what there is, and exits 1.");
   auto arguments = std::make_shared<WorkspaceArguments>();
   add_device_arguments(*verb, *arguments);
-  CLI::Option* grid = verb->add_option("--grid", arguments->grid, "spacing of the lattice, 1mm if not given")
-                          ->type_name("LENGTH");
+  verb->add_option("--grid", arguments->grid,
+                   "spacing of the lattice; if not given, a round one that suits the device and takes seconds")
+      ->type_name("LENGTH");
   verb->add_option(
           "--against", arguments->against,
           "compare with another device: what both reach, and what only one does; --set does not change it")
@@ -566,8 +531,7 @@ void add_workspace(CLI::App& app, Context& context) {
       "--all-figures", arguments->all,
       "also polytope forces, resolution and distances to singularities; in --map stiffness, apparent "
       "mass and natural frequencies too, which take some 10 µs a point");
-  verb->callback([arguments, grid, &context] {
-    arguments->grid_given = grid->count() > 0;
+  verb->callback([arguments, &context] {
     context.run = [arguments, &context] { return workspace(*arguments, context.terminal); };
   });
 }

@@ -1,11 +1,11 @@
 #include <cmath>
 #include <fmt/format.h>
-#include <mutex>
 #include <numbers>
 
 #include "gnuplot.h"
 #include "interrupt.h"
 #include "mechanics.h"
+#include "statistic_text.h"
 #include "workspace_verb.h"
 
 #include "zwidth/analysis/data_sheet.h"
@@ -17,16 +17,18 @@ namespace {
 
 /// A figure over the plane, with the largest circle and square, the condition number with the lines of K = 5,
 /// 10 and 100.
-void draw(const Model& model, const Extents& extents, const InscribedShapes& inscribed, const Drawn& drawn,
-          const std::string& path) {
+void draw(const WorkspaceArguments& arguments, const Model& model, const Extents& extents,
+          const InscribedShapes& inscribed, const MechanicalSweep& mechanics) {
+  const Drawn drawn = drawn_of(arguments, model);
   const bool condition = !drawn.mechanical && static_cast<Figure>(drawn.index) == Figure::condition_number;
   const SliceMap map =
       map_slice(model.mechanism, extents, 2, 0.0, condition ? 321 : 161, drive_limits(model.drives, false));
   const std::vector<double> values = drawn_values(drawn, model, map);
+  refuse_unknown_figure(arguments, drawn, model, {values}, map, mechanics);
   const double width = map.u_range.width(), height = map.v_range.width();
   const double sheet_width = 760.0;
-  std::string script =
-      gnuplot_terminal(path, sheet_width, std::round((sheet_width - 190.0) * height / width + 110.0));
+  std::string script = gnuplot_terminal(arguments.figure, sheet_width,
+                                        std::round((sheet_width - 190.0) * height / width + 110.0));
   script += gnuplot_block(values, map.nu, "map");
   script += gnuplot_outlines(map.slice, "edge");
   std::string lines;
@@ -73,30 +75,20 @@ void draw(const Model& model, const Extents& extents, const InscribedShapes& ins
 
 }  // namespace
 
-int plane_workspace(const WorkspaceArguments& arguments, const Model& model, double spacing,
+int plane_workspace(const WorkspaceArguments& arguments, const Model& model, double asked,
                     const Terminal& terminal) {
   const Mechanism& mechanism = model.mechanism;
+  StagedProgress progress(&stop_on_interrupt());
+  const Extents extents = workspace_extents(mechanism);
+  const double spacing = asked > 0.0 ? asked : suitable_spacing(mechanism, extents);
   const LatticeOptions options{
       .spacing = spacing, .limits = drive_limits(model.drives, false), .all_figures = arguments.all};
-  const Extents extents = workspace_extents(mechanism);
-  const double points = (extents.range[0].width() / spacing + 1.0) * (extents.range[1].width() / spacing + 1.0);
-  Effort effort;
-  effort.cancel = &stop_on_interrupt();
   LatticeSweep sweep;
-  {
-    Progress progress("workspace", "points");
-    std::mutex mutex;
-    effort.progress = [&](double fraction) {
-      const std::lock_guard lock(mutex);
-      progress.update(fraction * points, points);
-    };
-    try {
-      sweep = sweep_workspace(mechanism, options, effort);
-    } catch (const std::length_error& error) {
-      throw InputError(fmt::format("--grid {}: {}; take a coarser grid", arguments.grid, error.what()));
-    }
+  try {
+    sweep = sweep_workspace(mechanism, options, progress.next(0.3));
+  } catch (const std::length_error& error) {
+    throw InputError(fmt::format("--grid {}: {}; take a coarser grid", arguments.grid, error.what()));
   }
-  effort.progress = {};
   refuse_wide_lattice(arguments, sweep, extents, true);
   Json document;
   document["device"] = model.description.name;
@@ -111,23 +103,23 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
   WorkspaceConditioning conditioning;
   std::optional<MechanicalSweep> mechanics;
   if (sweep.complete) {
+    refine_extremes(mechanism, options, sweep, progress.next(0.05));
     if (!arguments.map.empty()) {
-      WorkspaceMap map = map_workspace(mechanism, options, effort);
-      if (arguments.all && map.complete) add_mechanics(mechanism, model.drives, map, effort);
+      WorkspaceMap map = map_workspace(mechanism, options, progress.next(0.0));
+      if (arguments.all && map.complete) add_mechanics(mechanism, model.drives, map, progress.next(0.0));
       if (map.complete) write_map(map, arguments.map);
     }
-    area = workspace_volume(mechanism, effort);
+    area = workspace_volume(mechanism, progress.next(0.1));
     inscribed = inscribed_shapes(mechanism);
     dexterous = dexterous_region(mechanism, extents);
-    conditioning = sweep_conditioning(mechanism, spacing, effort);
-    mechanics = mechanics_of(model, extents, spacing, effort);
+    conditioning = sweep_conditioning(mechanism, spacing, progress.next(0.2));
+    mechanics = mechanics_of(model, extents, spacing, progress.next(0.35));
     document["mechanics"] = mechanics_json(*mechanics);
-    if (!arguments.figure.empty())
-      draw(model, extents, inscribed, drawn_of(arguments, model), arguments.figure);
+    if (!arguments.figure.empty()) draw(arguments, model, extents, inscribed, *mechanics);
     document["area"] = json_number(area.value);
     document["area_method"] = to_string(area.method);
     document["area_error"] = json_number(area.error_estimate);
-    document["lattice_area_error"] = json_number(area.error_estimate + std::abs(sweep.area - area.value));
+    document["lattice_area_error"] = json_number(counting_error(area, sweep));
   }
   document["ranges"] = {{"x", json_interval(extents.range[0])}, {"y", json_interval(extents.range[1])}};
   const InscribedShape &circle = inscribed.circle(), &square = inscribed.square();
@@ -161,9 +153,7 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
   sheet.row("points inside", fmt::format("{}", sweep.inside),
             fmt::format("of {} in the box; {} by counting", sweep.lattice_points,
                         quantity(sweep.area, 1e4, "cm²", 5)) +
-                (sweep.complete
-                     ? fmt::format(", off by {}", quantity(std::abs(sweep.area - area.value), 1e4, "cm²", 1))
-                     : ""));
+                (sweep.complete ? " ± " + quantity(counting_error(area, sweep), 1e4, "cm²", 1) : ""));
   for (size_t k = 0; k < 2; ++k) {
     sheet.row(fmt::format("range of {}", static_cast<char>('x' + k)),
               interval(extents.range[k].min, extents.range[k].max, kMilli, "mm"),
@@ -185,7 +175,8 @@ int plane_workspace(const WorkspaceArguments& arguments, const Model& model, dou
     }
   }
   sheet.heading("Figures over the workspace");
-  sheet.table({"", "min", "mean", "max", ""}, rows);
+  sheet.table(statistic_heads(""), rows);
+  if (any_unbounded(rows)) sheet.paragraph(rows_note(rows, false), 2, Tint::dim);
   if (sweep.complete) {
     print_conditioning(conditioning.of_all, sweep[Figure::condition_number], true, sheet);
   }

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <mutex>
 
 #include "at/goal.h"
 #include "gnuplot.h"
@@ -10,6 +9,7 @@
 #include "sheet_arm.h"
 #include "workspace_verb.h"
 
+#include "zwidth/analysis/joint_torque.h"
 #include "zwidth/analysis/pose_workspace.h"
 #include "zwidth/description/units.h"
 
@@ -60,6 +60,7 @@ int platform_workspace(const WorkspaceArguments& arguments, const Model& model, 
     throw InputError(fmt::format("--of {}: is for tools that do not turn; leave it out", arguments.of));
   const Mechanism& mechanism = model.mechanism;
   PoseWorkspaceOptions options{.spacing = spacing};
+  options.any_places = 4000;
   if (arguments.figure.empty()) options.slice_points = 0;
   if (!arguments.orientation.empty() || !arguments.rotation.empty())
     options.orientation = at::orientation_given(arguments.orientation, arguments.rotation);
@@ -69,21 +70,17 @@ int platform_workspace(const WorkspaceArguments& arguments, const Model& model, 
     if (!at) throw InputError(fmt::format("--position \"{}\": {}; {}", arguments.position, at.rule, at.advice));
     options.position = Vector3(at.values[0], at.values[1], at.values[2]);
   }
-  Effort effort;
-  effort.cancel = &stop_on_interrupt();
-  PoseWorkspace workspace;
-  {
-    Progress progress("workspace", "%");
-    std::mutex mutex;
-    effort.progress = [&](double fraction) {
-      const std::lock_guard lock(mutex);
-      progress.update(100.0 * fraction, 100.0);
+  if (model.has_drives()) {
+    options.torque = [&model](const Posture& posture) {
+      return torque_range(model.drives, model.pneumatic_drives, posture.active(), false);
     };
-    try {
-      workspace = pose_workspace(mechanism, options, effort);
-    } catch (const std::length_error& error) {
-      throw InputError(fmt::format("--grid {}: {}; take a coarser grid", arguments.grid, error.what()));
-    }
+  }
+  StagedProgress progress(&stop_on_interrupt());
+  PoseWorkspace workspace;
+  try {
+    workspace = pose_workspace(mechanism, options, progress.next(0.95));
+  } catch (const std::length_error& error) {
+    throw InputError(fmt::format("--grid {}: {}; take a coarser grid", arguments.grid, error.what()));
   }
   if (!workspace.complete) {
     complain("stopped before the end");
@@ -109,7 +106,7 @@ int platform_workspace(const WorkspaceArguments& arguments, const Model& model, 
     draw(model, workspace, arguments.figure);
   std::optional<MechanicalPostures> mechanics;
   if (answered && model.mechanism.linear_rows() > 0)
-    mechanics = sweep_mechanics_of_postures(model.mechanism, model.drives);
+    mechanics = sweep_mechanics_of_postures(model.mechanism, model.drives, 4000, progress.next(0.05));
   if (arguments.json) {
     Json document;
     document["device"] = model.description.name;
@@ -123,6 +120,17 @@ int platform_workspace(const WorkspaceArguments& arguments, const Model& model, 
   sheet.title(fmt::format("{}: workspace", model.description.name),
               "of the tool in one orientation, device frame");
   for (const ArmFact& fact : pose_facts(workspace)) sheet.row(fact.name, fact.value, fact.note);
+  const std::vector<ArmFact> loads = pose_load_facts(workspace);
+  if (!loads.empty()) sheet.heading("Forces, continuous");
+  for (const ArmFact& fact : loads) sheet.row(fact.name, fact.value, fact.note);
+  if (!loads.empty())
+    sheet.paragraph(
+        "Pure forces and pure moments over these places, whichever way is weaker; the device's own weight is "
+        "not taken off.",
+        2, Tint::dim);
+  const std::vector<ArmFact> anyhow = any_orientation_facts(workspace);
+  if (!anyhow.empty()) sheet.heading("In any orientation");
+  for (const ArmFact& fact : anyhow) sheet.row(fact.name, fact.value, fact.note);
   if (workspace.reached) {
     sheet.heading("Turned at one place");
     for (const ArmFact& fact : turning_facts(workspace.turning)) sheet.row(fact.name, fact.value, fact.note);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -7,6 +9,7 @@
 #include "model.h"
 #include "sheet_arm.h"
 #include "sheet_json.h"
+#include "terminal.h"
 
 #include "zwidth/analysis/conditioning.h"
 #include "zwidth/analysis/mechanical.h"
@@ -18,8 +21,7 @@
 namespace zwidth {
 
 struct WorkspaceArguments : DeviceArguments {
-  std::string grid = "1mm";
-  bool grid_given = false;
+  std::string grid;  ///< empty: one that suits
   std::string against;
   std::string map;
   std::string figure;
@@ -29,12 +31,33 @@ struct WorkspaceArguments : DeviceArguments {
   bool all = false;
 };
 
+/// How far an answer of several stages is, from any thread.
+class StagedProgress {
+ public:
+  explicit StagedProgress(const std::atomic<bool>* cancel) : cancel_(cancel), progress_("workspace", "%") {}
+
+  /// For the next stage, which takes `share` of the time of all.
+  Effort next(double share);
+
+ private:
+  const std::atomic<bool>* cancel_;
+  Progress progress_;
+  std::mutex mutex_;
+  double done_ = 0.0;
+};
+
 inline bool in_plane(const Mechanism& mechanism) {
   return mechanism.platform() == PlatformFreedom::planar_translation;
 }
 
-/// The verb for a tool in a plane. REQUIRES: !workspace_obstacle(model.mechanism).
-int plane_workspace(const WorkspaceArguments& arguments, const Model& model, double spacing,
+/// Two devices on common cells; `spacing` 0: one that suits both. Throws InputError if they cannot be compared.
+int compare(const WorkspaceArguments& arguments, const Model& model, double spacing, const Terminal& terminal);
+
+/// What the hand alone moves does not decide where a tool that is a point can be.
+Description without_hand_joints(const Description& description);
+
+/// The verb for a tool in a plane. `asked` 0: one that suits. REQUIRES: !workspace_obstacle(model.mechanism).
+int plane_workspace(const WorkspaceArguments& arguments, const Model& model, double asked,
                     const Terminal& terminal);
 
 /// The verb for an arm whose tool turns. `spacing` 0: one that fits. REQUIRES:
@@ -80,6 +103,11 @@ Drawn drawn_of(const WorkspaceArguments& arguments, const Model& model);
 std::vector<double> drawn_values(const Drawn& drawn, const Model& model, const SliceMap& map);
 /// Of the values on all cuts, without the few near singularities.
 Interval drawn_range(const std::vector<std::vector<double>>& cuts);
+/// Throws InputError if what `--figure --of` asks for has no value on any of the cuts: it is not known of the
+/// device.
+void refuse_unknown_figure(const WorkspaceArguments& arguments, const Drawn& drawn, const Model& model,
+                           const std::vector<std::vector<double>>& cuts, const SliceMap& map,
+                           const MechanicalSweep& mechanics);
 /// A coarse lattice, so that it takes a moment.
 MechanicalSweep mechanics_of(const Model& model, const Extents& extents, double spacing, const Effort& effort);
 

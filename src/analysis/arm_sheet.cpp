@@ -36,9 +36,10 @@ std::optional<HomePosture> home_posture(const Mechanism& mechanism, const Torque
   const Rates rate = rates(posture);
   home.jacobian = rate.tool;
   const int linear = mechanism.linear_rows();
-  if (linear > 0) home.translation = dexterity(Jacobian(rate.tool.topRows(linear)));
+  const JacobianScale scale = jacobian_scale(mechanism);
+  if (linear > 0) home.translation = dexterity(scale.homogeneous_rows(rate.tool.topRows(linear)));
   if (mechanism.tool_turns())
-    home.rotation = dexterity(Jacobian(rate.tool.bottomRows(rate.tool.rows() - linear)));
+    home.rotation = dexterity(scale.homogeneous_rows(rate.tool.bottomRows(rate.tool.rows() - linear)));
   home.gravity_torques = gravity_torques(posture, rate);
   if (continuous) home.continuous_loads = axis_loads(mechanism, rate.tool, continuous(posture));
   if (peak) home.peak_loads = axis_loads(mechanism, rate.tool, peak(posture));

@@ -5,17 +5,21 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <memory>
+#include <optional>
+#include <stdexcept>
 
+#include "zwidth/analysis/internal/any_orientation.h"
 #include "zwidth/analysis/internal/lattice.h"
 #include "zwidth/analysis/internal/parallel.h"
 #include "zwidth/analysis/internal/probe.h"
+#include "zwidth/analysis/pose_workspace.h"
 #include "zwidth/analysis/posture_sweep.h"
 #include "zwidth/analysis/reach.h"
 
 namespace zwidth {
 namespace {
 
+using internal::PoseFlood;
 using internal::Probe;
 using IndexRange = DeltaBatch::IndexRange;
 using Box = std::array<IndexRange, 3>;
@@ -29,14 +33,32 @@ double rounded_up(double spacing) {
   return 10.0 * power;
 }
 
-// The arms whose tool points `workspace_extents` cannot answer for.
-bool needs_map(const Mechanism& mechanism) {
-  return workspace_obstacle(mechanism).has_value();
+// How the places of a tool are found.
+enum class Kind {
+  probe,  // it does not turn
+  map,    // of an arm
+  flood,  // of a platform that turns
+};
+
+Kind kind_of(const Mechanism& mechanism) {
+  if (!workspace_obstacle(mechanism)) return Kind::probe;
+  return reach_obstacle(mechanism) ? Kind::flood : Kind::map;
+}
+
+// A first look at a platform.
+PoseWorkspace glance(const Mechanism& mechanism) {
+  PoseWorkspaceOptions options{.places = 500, .shapes = false, .turning = false};
+  options.slice_points = 0;
+  return pose_workspace(mechanism, options);
 }
 
 double longest_side(const Mechanism& mechanism) {
-  if (!needs_map(mechanism)) return workspace_extents(mechanism).size().maxCoeff();
+  if (kind_of(mechanism) == Kind::probe) return workspace_extents(mechanism).size().maxCoeff();
   double longest = 0.0;
+  if (kind_of(mechanism) == Kind::flood) {
+    for (const Interval& range : glance(mechanism).range) longest = std::max(longest, range.width());
+    return longest;
+  }
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3 along = Vector3::Unit(axis);
     longest = std::max(longest,
@@ -47,9 +69,33 @@ double longest_side(const Mechanism& mechanism) {
 
 // Cells along the longest side that cost some seconds at most.
 double affordable_cells(const Mechanism& mechanism) {
-  if (internal::tool_dimension(mechanism) == 2) return 400.0;
-  if (needs_map(mechanism)) return 100.0;
-  return Probe(mechanism).fast() ? 150.0 : 40.0;
+  const Kind kind = kind_of(mechanism);
+  if (kind == Kind::flood) return comparison_axes(mechanism).size() == 3 ? 25.0 : 100.0;
+  if (kind == Kind::map) return 100.0;
+  const bool fast = Probe(mechanism).fast();
+  if (internal::tool_dimension(mechanism) == 2) return fast ? 400.0 : 200.0;
+  return fast ? 150.0 : 40.0;
+}
+
+// The places of a platform as the middles of cells.
+PoseFlood flood_cells(const Mechanism& mechanism, double spacing, const ComparisonOptions& options,
+                      const Effort& effort) {
+  constexpr std::size_t kMost = 2'000'000;
+  const internal::PoseGuide guide(mechanism);
+  internal::PoseFloodOptions flood{
+      .spacing = spacing, .offset = Vector3::Constant(0.5), .most = kMost, .exits = false};
+  PoseFlood found;
+  if (options.orientation) {
+    const internal::PoseGuide::Step seed =
+        guide.step(guide.home(), {guide.home().tool().position, *options.orientation});
+    if (!seed.inside) return found;
+    const internal::PoseChart chart{.origin = seed.posture->tool(), .axes = guide.moves()};
+    found = flood_poses(guide, chart, *seed.posture, chart.coordinates(chart.origin.position), flood, effort);
+  } else {
+    found = flood_places(guide, flood, effort);
+  }
+  if (found.full) throw std::length_error("more than two million cells");
+  return found;
 }
 
 // One device's workspace as cells: whether the middle of each is reached.
@@ -57,30 +103,49 @@ class Cells {
  public:
   Cells(const Mechanism& mechanism, const ComparisonOptions& options, double spacing, const Effort& effort)
       : mechanism_(mechanism), spacing_(spacing) {
-    if (needs_map(mechanism)) {
+    if (kind_of(mechanism) == Kind::flood) {
+      flood_ = flood_cells(mechanism, spacing, options, effort);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        box_[axis] = {0, axis == 2 && flood_->dimension == 2 ? 0 : -1};
+      for (const PoseFlood::Point& point : flood_->points) {
+        for (std::size_t axis = 0; axis < static_cast<std::size_t>(flood_->dimension); ++axis) {
+          const std::int64_t at = point.at[axis];
+          const bool empty = internal::size(box_[axis]) == 0;
+          box_[axis] = {empty ? at : std::min(box_[axis].first, at),
+                        empty ? at : std::max(box_[axis].last, at)};
+        }
+      }
+      return;
+    }
+    if (kind_of(mechanism) == Kind::map) {
       map_ = reach_map(mechanism, {.samples = options.reach_postures, .spacing = spacing}, effort);
       for (std::size_t axis = 0; axis < 3; ++axis)
         box_[axis] = {map_->first[axis], map_->first[axis] + map_->count[axis] - 1};
       return;
     }
+    fresh_.emplace(mechanism);
     box_ = internal::lattice_box(mechanism, spacing);
     for (int axis = 0; axis < internal::tool_dimension(mechanism); ++axis) --box_[axis].first;
   }
 
   const Box& box() const { return box_; }
-  bool complete() const { return !map_ || map_->complete; }
+  bool complete() const { return (!map_ || map_->complete) && (!flood_ || flood_->complete); }
 
   // Asks cell after cell; every thread has its own.
   class Reader {
    public:
     explicit Reader(const Cells& cells) : cells_(cells) {
-      if (!cells.map_) probe_.emplace(cells.mechanism_);
+      if (cells.fresh_) probe_ = cells.fresh_;
     }
     void start_column() {
       if (probe_ && probe_->dimension() == 3) probe_->restart();
     }
     bool reached(std::int64_t i, std::int64_t j, std::int64_t k) {
       if (cells_.map_) return cells_.map_->at(i, j, k);
+      if (cells_.flood_) {
+        return cells_.flood_->place.contains(
+            {static_cast<std::int32_t>(i), static_cast<std::int32_t>(j), static_cast<std::int32_t>(k)});
+      }
       if (!holds(0, i) || !holds(1, j) || !holds(2, k)) return false;
       const auto middle = [this](std::int64_t index) {
         return (static_cast<double>(index) + 0.5) * cells_.spacing_;
@@ -102,20 +167,34 @@ class Cells {
   double spacing_;
   Box box_{};
   std::optional<ReachMap> map_;
+  std::optional<PoseFlood> flood_;
+  std::optional<Probe> fresh_;
 };
 
 }  // namespace
 
 std::optional<std::string> comparison_obstacle(const Mechanism& mechanism) {
-  const auto obstacle = workspace_obstacle(mechanism);
-  return reach_obstacle(mechanism) ? obstacle : std::nullopt;
+  const std::optional<std::string> obstacle = workspace_obstacle(mechanism);
+  if (!obstacle || !reach_obstacle(mechanism)) return std::nullopt;
+  if (const auto why = pose_workspace_obstacle(mechanism)) return mechanism.tool_turns() ? why : obstacle;
+  const std::size_t axes = internal::PoseGuide(mechanism).moves().size();
+  if (axes < 2) return "its tool moves along fewer than two axes without turning";
+  if (glance(mechanism).unbounded) return "nothing ends its workspace: give the sliding joints ranges";
+  return std::nullopt;
+}
+
+std::vector<int> comparison_axes(const Mechanism& mechanism) {
+  if (kind_of(mechanism) == Kind::flood) return internal::PoseGuide(mechanism).moves();
+  if (kind_of(mechanism) == Kind::probe && internal::tool_dimension(mechanism) == 2) return {0, 1};
+  return {0, 1, 2};
 }
 
 WorkspaceComparison compare_workspaces(const Mechanism& first, const Mechanism& second,
                                        const ComparisonOptions& options, const Effort& effort) {
   assert(!comparison_obstacle(first) && !comparison_obstacle(second) && options.spacing >= 0.0);
-  WorkspaceComparison result{.dimension = internal::tool_dimension(first), .spacing = options.spacing};
-  assert(result.dimension == internal::tool_dimension(second));
+  assert(comparison_axes(first) == comparison_axes(second));
+  WorkspaceComparison result{.dimension = static_cast<int>(comparison_axes(first).size()),
+                             .spacing = options.spacing};
   if (result.spacing == 0.0) {
     // The finest that both can afford in their own boxes.
     double finest = 0.0;

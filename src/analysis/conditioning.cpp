@@ -25,8 +25,9 @@ double coordinate(std::int64_t index, double spacing) {
 // Condition numbers along columns of the lattice; NaN outside.
 class Columns {
  public:
-  Columns(const Mechanism& mechanism, const IndexRange& k, double spacing)
-      : probe_(mechanism), spacing_(spacing), k_(k), condition_(static_cast<std::size_t>(internal::size(k))) {
+  Columns(const Probe& fresh, const IndexRange& k, double spacing)
+      : probe_(fresh), spacing_(spacing), k_(k), condition_(static_cast<std::size_t>(internal::size(k))) {
+    const Mechanism& mechanism = fresh.mechanism();
     if (!mechanism.delta()) return;
     batch_.emplace(*mechanism.delta(), mechanism.active_range(0));
     x_.resize(condition_.size());
@@ -187,8 +188,9 @@ WorkspaceConditioning sweep_conditioning(const Mechanism& mechanism, double spac
   };
   std::vector<Layer> layers(static_cast<std::size_t>(internal::size(box[0])));
   WorkspaceConditioning result{.spacing = spacing};
+  const Probe fresh(mechanism);
   result.complete = internal::for_each_index(layers.size(), effort, [&](std::size_t index) {
-    Columns columns(mechanism, box[2], spacing);
+    Columns columns(fresh, box[2], spacing);
     const double x = coordinate(box[0].first + static_cast<std::int64_t>(index), spacing);
     for (std::int64_t j = box[1].first; j <= box[1].last; ++j) {
       for (const double condition : columns.at(x, coordinate(j, spacing))) {

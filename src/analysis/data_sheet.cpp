@@ -180,9 +180,8 @@ std::optional<PostureSheet> middle_posture(const Mechanism& mechanism, const Dat
   middle.active = active;
   middle.position = posture.tool().position;
   middle.jacobian = J;
-  const Dexterity dexterous = dexterity(J);
-  middle.condition_number = dexterous.condition_number;
-  middle.manipulability = dexterous.manipulability;
+  middle.condition_number = dexterity(jacobian_scale(mechanism).homogeneous_rows(J)).condition_number;
+  middle.manipulability = dexterity(J).manipulability;
   middle.gravity_torques = gravity_torques(posture, rate);
   if (has_mass(mechanism)) middle.apparent_mass = apparent_mass(cartesian_mass(J, mass_matrix(posture, rate)));
   if (driven) {
@@ -225,7 +224,10 @@ ArmSheet arm_of(const Mechanism& mechanism, const std::vector<std::optional<Driv
       return torque_range(drives, cylinders, posture.active(), peak);
     };
   };
-  ArmSheetOptions arm{.effort = options.effort};
+  ArmSheetOptions arm;
+  arm.effort = options.effort;
+  arm.pose.torque = source(false);
+  arm.pose.any_places = 4000;
   if (options.slice_points <= 1) {
     arm.slice_postures = 0;
     arm.pose.slice_points = 0;
@@ -234,10 +236,15 @@ ArmSheet arm_of(const Mechanism& mechanism, const std::vector<std::optional<Driv
   return arm_sheet(mechanism, source(false), source(true), stepped ? joint_step : ActiveVector(), arm);
 }
 
+Effort quiet_of(const Effort& effort) {
+  return {.threads = effort.threads, .cancel = effort.cancel};
+}
+
 WorkspaceSheet workspace_sheet(const Mechanism& mechanism, const LatticeOptions& lattice,
                                const DataSheetOptions& options) {
   WorkspaceSheet workspace;
   workspace.sweep = sweep_workspace(mechanism, lattice, options.effort);
+  if (workspace.sweep.complete) refine_extremes(mechanism, lattice, workspace.sweep, quiet_of(options.effort));
   workspace.extents = workspace_extents(mechanism);
   workspace.volume =
       finer_count(workspace_volume(mechanism, {.threads = options.effort.threads}), workspace.sweep);
@@ -256,6 +263,7 @@ PlaneSheet plane_sheet(const Mechanism& mechanism, const LatticeOptions& lattice
                        const DataSheetOptions& options) {
   PlaneSheet plane;
   plane.sweep = sweep_workspace(mechanism, lattice, options.effort);
+  if (plane.sweep.complete) refine_extremes(mechanism, lattice, plane.sweep, quiet_of(options.effort));
   plane.extents = workspace_extents(mechanism);
   plane.area = workspace_volume(mechanism, {.threads = options.effort.threads});
   plane.inscribed = inscribed_shapes(mechanism);
@@ -380,6 +388,11 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
     const Mechanism turning(with_turning_tool(description));
     sheet.arm = arm_of(mechanism, drives, cylinders, sheet.joint_resolution, turning, options);
     sheet.complete = sheet.arm->complete;
+    if (sheet.complete && (has_mass(mechanism) || sheet.stiffness) && mechanism.linear_rows() > 0) {
+      sheet.mechanics_of_postures =
+          sweep_mechanics_of_postures(mechanism, drives, 4000, quiet_of(options.effort));
+      sheet.complete = sheet.mechanics_of_postures->complete;
+    }
     return sheet;
   }
   if (const std::optional<std::string> obstacle = workspace_obstacle(mechanism)) {
@@ -388,16 +401,8 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
   }
 
   const bool in_plane = internal::tool_dimension(mechanism) == 2;
-  const bool batch = mechanism.delta().has_value(), fast = internal::Probe(mechanism).fast();
   const Extents extents = workspace_extents(mechanism);
-  const double least = fast ? 0.0 : options.general_spacing;
-  // Without batch kernels a point in closed form costs some ten times as much.
-  const double most = batch  ? options.most_points
-                      : fast ? 0.1 * options.most_points
-                             : options.most_costly_points;
-  const double spacing = fitting_spacing(extents, std::max(options.spacing, least), most);
-  const double inertia_spacing =
-      fitting_spacing(extents, std::max(options.inertia_spacing, least), options.most_costly_points);
+  const double spacing = options.spacing > 0.0 ? options.spacing : suitable_spacing(mechanism, extents);
   const DriveLimits limits = drive_limits(drives, false);
   const LatticeOptions lattice{.spacing = spacing, .limits = limits, .all_figures = true};
 
@@ -433,23 +438,18 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
       scale(sheet.peak->strongest, ratio[0]);
     } else {
       const LatticeOptions peak{.spacing = spacing, .limits = drive_limits(drives, true), .all_figures = true};
-      sheet.peak = force_sheet(sweep_workspace(mechanism, peak, options.effort), drives, true);
+      LatticeSweep with_peak = sweep_workspace(mechanism, peak, options.effort);
+      if (with_peak.complete) refine_extremes(mechanism, peak, with_peak, quiet_of(options.effort));
+      sheet.peak = force_sheet(with_peak, drives, true);
     }
     const int first = static_cast<int>(Figure::step_x);
     for (int axis = 0; axis < 3; ++axis) sheet.resolution[axis] = sweep.figures[first + axis];
   }
-  if (has_mass(mechanism)) {
-    sheet.inertia = sweep_inertia(mechanism, inertia_spacing,
-                                  {.threads = options.effort.threads, .cancel = options.effort.cancel});
-    sheet.complete = sheet.complete && sheet.inertia->complete;
-  }
   if (has_mass(mechanism) || sheet.stiffness) {
-    constexpr double kFewer = 0.2;  // of the points for inertia alone
     MechanicsSheet mechanics;
     const Effort effort{.threads = options.effort.threads, .cancel = options.effort.cancel};
-    mechanics.sweep =
-        sweep_mechanics(mechanism, drives,
-                        fitting_spacing(extents, inertia_spacing, kFewer * options.most_costly_points), effort);
+    mechanics.sweep = sweep_mechanics(
+        mechanism, drives, fitting_spacing(extents, spacing, options.most_mechanical_points), effort);
     const auto add = [&](const SliceMap& map) {
       if (map.nu > 1 && map.nv > 1) mechanics.cuts.push_back(cut_mechanics(mechanism, drives, map, 2, effort));
     };

@@ -24,13 +24,9 @@
 namespace zwidth {
 
 struct DataSheetOptions {
-  // The finest lattices; those of a large workspace are coarser by steps of 1, 2, 5, 10, until few enough
-  // points lie in the box around it.
-  double spacing = 1e-3;              ///< of the workspace lattice for kinematic figures [m]
-  double inertia_spacing = 5e-3;      ///< of the lattice for inertia, which costs more per point [m]
-  double general_spacing = 5e-3;      ///< of both for mechanisms without batch kernels [m]
-  double most_points = 3e7;           ///< for kinematic figures with batch kernels
-  double most_costly_points = 1.2e5;  ///< for everything else
+  double spacing = 0.0;  ///< of the workspace lattice [m]; 0: `suitable_spacing`
+  double most_mechanical_points =
+      kMechanicalPoints;       ///< of the lattice for masses and stiffness, whose points cost more
   int slice_points = 121;      ///< grid points along the longer side of a map on a plane; 0 leaves the maps out
   int surface_divisions = 24;  ///< of each edge of the joint ranges in the surface mesh; 0 leaves it out
   double max_frequency =
@@ -159,17 +155,17 @@ struct DataSheet {
   std::optional<WorkspaceConditioning> conditioning;  ///< with either
   std::optional<ForceSheet> continuous;  ///< empty without drives on every joint, or without workspace
   std::optional<ForceSheet> peak;
-  std::optional<InertiaSweep> inertia;  ///< empty if nothing has mass
-  std::optional<PostureSheet> middle;   ///< empty if the middle of the joint ranges does not close
+  std::optional<PostureSheet> middle;  ///< empty if the middle of the joint ranges does not close
   /// Worst-case tool step per axis over the workspace [m]; counts are 0 without encoders.
   std::array<Statistic, 3> resolution;
   ActiveVector joint_resolution;   ///< angle of one count, per active joint [rad]; 0 without a drive
   ActiveVector torque_resolution;  ///< torque of one current step, per active joint [N m]; 0 if not given
 
-  std::optional<StiffnessSheet> stiffness;            ///< empty where the source does not give enough
-  std::optional<MechanicsSheet> mechanics;            ///< empty where neither that nor any mass is known
-  std::vector<DriveSheet> drives;                     ///< in the order of the description
-  std::vector<PneumaticDriveSheet> pneumatic_drives;  ///< in the order of the joints
+  std::optional<StiffnessSheet> stiffness;                  ///< empty where the source does not give enough
+  std::optional<MechanicsSheet> mechanics;                  ///< with a workspace, where that or a mass is known
+  std::optional<MechanicalPostures> mechanics_of_postures;  ///< instead, of a tool that also turns
+  std::vector<DriveSheet> drives;                           ///< in the order of the description
+  std::vector<PneumaticDriveSheet> pneumatic_drives;        ///< in the order of the joints
   std::vector<std::string> warnings;  ///< sentences for a person: failed margins, what could not be computed
   bool complete = true;               ///< false if it was cancelled
 };

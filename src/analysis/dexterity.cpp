@@ -3,20 +3,19 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
+#include "zwidth/analysis/posture_sweep.h"
 #include "zwidth/math/svd.h"
 
 namespace zwidth {
 namespace {
 
 double conditioning(const Jacobian& jacobian) {
-  if (jacobian.cols() < jacobian.rows()) {  // of the motions that it has
-    const SmallVector sigma = svd(jacobian).sigma;
-    return sigma[0] > 0.0 ? sigma[sigma.size() - 1] / sigma[0] : 0.0;
-  }
-  const double number = dexterity(jacobian).condition_number;
-  return std::isfinite(number) ? 1.0 / number : 0.0;
+  // Of a tool with fewer freedoms than rows, over those that it has.
+  const SmallVector sigma = svd(jacobian).sigma;
+  return sigma[0] > 0.0 ? sigma[sigma.size() - 1] / sigma[0] : 0.0;
 }
 
 double mean_conditioning(std::span<const Jacobian> jacobians, const JacobianUnits& units, double length) {
@@ -77,27 +76,32 @@ CharacteristicLength characteristic_length(std::span<const Jacobian> jacobians, 
     angular += J.bottomRows(J.rows() - units.linear_rows).squaredNorm();
   }
   const double middle = linear > 0.0 && angular > 0.0 ? 0.5 * std::log(linear / angular) : 0.0;
-  constexpr double kDecades = 6.0;
-  constexpr int kRaster = 120;
-  const double step = 2.0 * kDecades * std::log(10.0) / kRaster;
+  const double step = 0.1 * std::log(10.0);
   const auto at = [&](double log_length) { return mean_conditioning(jacobians, units, std::exp(log_length)); };
-  const int centre = kRaster / 2;
-  int best = 0;
+  int best = 0, first = 0, last = -1;
   double best_value = -1.0;
-  for (int k = 0; k <= kRaster; ++k) {
-    const double value = at(middle + step * (k - centre));
+  const auto look_at = [&](int k) {
+    const double value = at(middle + step * k);
     if (value > best_value) {
       best_value = value;
       best = k;
     }
-  }
+  };
+  // Farther only while the best lies near an end of what was looked at.
+  constexpr int kMost = 60, kFurther = 10;
+  do {
+    for (int k = first - kFurther; k < first; ++k) look_at(k);
+    for (int k = last + 1; k <= last + kFurther; ++k) look_at(k);
+    first -= kFurther;
+    last += kFurther;
+  } while (last < kMost && (best - first < kFurther / 2 || last - best < kFurther / 2));
   if (!(best_value > 0.0)) return result_at(1.0);
   // Golden section within the neighbours.
-  double low = middle + step * (best - 1 - centre), high = low + 2.0 * step;
+  double low = middle + step * (best - 1), high = low + 2.0 * step;
   constexpr double kGolden = 0.61803398874989485;
   double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
   double at_left = at(left), at_right = at(right);
-  while (high - low > 1e-10) {
+  while (high - low > 1e-9) {
     if (at_left >= at_right) {
       high = right;
       right = left;
@@ -113,6 +117,69 @@ CharacteristicLength characteristic_length(std::span<const Jacobian> jacobians, 
     }
   }
   return result_at(std::exp(0.5 * (low + high)));
+}
+
+Jacobian JacobianScale::motions(const Jacobian& tool) const {
+  const Jacobian J = homogeneous(tool);
+  if (J.cols() >= J.rows()) return J;
+  return svd(J).u.leftCols(J.cols()).transpose() * J;
+}
+
+Jacobian JacobianScale::homogeneous_rows(const Jacobian& rows) const {
+  JacobianUnits of_one_kind = units;
+  of_one_kind.linear_rows = static_cast<int>(rows.rows());
+  return zwidth::homogeneous(rows, of_one_kind, length);
+}
+
+namespace {
+
+// Active joints of sample `index`, the joints that the hand moves at home.
+ActiveVector driven_posture(const Mechanism& mechanism, std::int64_t index) {
+  std::vector<int> driven;
+  ActiveVector joints(mechanism.active_count());
+  for (int j = 0; j < mechanism.active_count(); ++j) {
+    joints[j] = mechanism.home_guess()[mechanism.active_joint(j)];
+    if (!mechanism.is_free(j)) driven.push_back(j);
+  }
+  const int n = static_cast<int>(driven.size());
+  for (int k = 0; k < n; ++k) {
+    const int j = driven[static_cast<std::size_t>(k)];
+    Interval range = mechanism.active_range(j);
+    if (!(range.width() < 1e3)) {
+      const bool slides =
+          mechanism.joints()[static_cast<std::size_t>(mechanism.active_joint(j))].type == JointType::prismatic;
+      const double far = slides ? mechanism.characteristic_length() : std::numbers::pi;
+      range = {joints[j] - far, joints[j] + far};
+    }
+    joints[j] = range.min + range.width() * spread_coordinate(n, k, index);
+  }
+  return joints;
+}
+
+}  // namespace
+
+JacobianScale jacobian_scale(const Mechanism& mechanism) {
+  JacobianScale scale{.units = jacobian_units(mechanism)};
+  scale.mixed = !scale.units.homogeneous(Jacobian::Zero(mechanism.tool_rows(), mechanism.active_count()));
+  if (!scale.mixed) return scale;
+  constexpr std::int64_t kTries = 512;
+  constexpr std::size_t kEnough = 64;
+  ActiveVector home(mechanism.active_count());
+  for (int j = 0; j < home.size(); ++j) home[j] = mechanism.home_guess()[mechanism.active_joint(j)];
+  const Solution start = solve_forward(mechanism, home);
+  const SolveOptions follow{.start = start ? &*start.posture : nullptr, .restart = false, .max_iterations = 60};
+  std::vector<Jacobian> jacobians;
+  for (std::int64_t index = 0; index < kTries && jacobians.size() < kEnough; ++index) {
+    const Solution solution = solve_forward(mechanism, driven_posture(mechanism, index), follow);
+    if (solution && solution.status != SolveStatus::joint_limit)
+      jacobians.push_back(jacobian(*solution.posture));
+  }
+  if (jacobians.empty() && start) jacobians.push_back(jacobian(*start.posture));
+  scale.length = mechanism.characteristic_length();
+  if (jacobians.empty()) return scale;
+  const CharacteristicLength found = characteristic_length(jacobians, scale.units);
+  if (found.conditioning > 0.0) scale.length = found.length;
+  return scale;
 }
 
 double isotropy(const Jacobian& jacobian) {

@@ -36,12 +36,35 @@ struct CharacteristicLength {
 
 /// The length with the smallest condition number of the homogeneous Jacobian. 1 m where the units are
 /// homogeneous already, or every length leaves it singular. With fewer joints than rows that of the motions
-/// which there are: the largest singular value over the smallest of as many as there are joints. It depends on
-/// the posture: state it with the figure, and compare devices of different sizes only at their own.
+/// which there are: the largest singular value over the smallest of as many as there are joints.
 CharacteristicLength characteristic_length(const Jacobian& jacobian, const JacobianUnits& units);
 
 /// One length for many postures: the largest mean of 1/(condition number).
 CharacteristicLength characteristic_length(std::span<const Jacobian> jacobians, const JacobianUnits& units);
+
+/// What makes the Jacobians of one device homogeneous: the one rule behind every condition number that is said
+/// of it, at a posture, on a map, in a data sheet and in a study. A length of the device, not of the posture,
+/// so that condition numbers at two places compare; that of each posture by itself (above) would make every one
+/// look as good as it can.
+struct JacobianScale {
+  JacobianUnits units;
+  bool mixed = false;   ///< rows or columns are of two kinds; else the length changes no condition number
+  double length = 1.0;  ///< [m], the device's characteristic length; 1 m unless mixed
+
+  /// REQUIRES: rows as `Mechanism::tool_axes`.
+  Jacobian homogeneous(const Jacobian& tool) const { return zwidth::homogeneous(tool, units, length); }
+  /// Of linear rows alone, or of angular rows alone: joints that slide and joints that turn made comparable.
+  Jacobian homogeneous_rows(const Jacobian& rows) const;
+  /// The homogeneous Jacobian in a basis of the motions that the tool has: square, with the same singular
+  /// values, where there are fewer joints than rows, and as it is elsewhere.
+  Jacobian motions(const Jacobian& tool) const;
+  /// Largest over smallest singular value of these; infinity if it is singular.
+  double condition_number(const Jacobian& tool) const { return dexterity(motions(tool)).condition_number; }
+};
+/// The length with the largest mean of 1/(condition number) over postures spread evenly over the ranges of the
+/// driven joints, those that the hand moves at home (Angeles 2002). Takes some milliseconds if the units are
+/// mixed, else none.
+JacobianScale jacobian_scale(const Mechanism& mechanism);
 
 /// Geometric over arithmetic mean of the eigenvalues of J J^T, between 0 (singular) and 1 (isotropic)
 /// (Kim & Khosla 1991). The rows must be of one kind, or the Jacobian homogeneous.

@@ -123,6 +123,7 @@ double integral(const Mechanism& mechanism, int order, const Effort& effort) {
     scale *= 0.5 * range.width();
   }
   std::vector<double> layers(n);
+  const Probe fresh(mechanism);
   std::optional<DeltaBatch> batch;
   if (mechanism.delta()) batch.emplace(*mechanism.delta(), mechanism.active_range(0));
   internal::for_each_index(n, {.threads = effort.threads}, [&](std::size_t a) {
@@ -146,7 +147,7 @@ double integral(const Mechanism& mechanism, int order, const Effort& effort) {
       batch->forward(cosine, sine, x, y, z, det);
       for (std::size_t p = 0; p < count; ++p) take(rule.weight[p / n] * rule.weight[p % n], det[p]);
     } else {
-      Probe probe(mechanism);
+      Probe probe = fresh;
       for (std::size_t b = 0; b < n; ++b) {
         for (std::size_t c = 0; c < deep; ++c) {
           const Probe::Answer answer = probe.forward({angle[0][a], angle[1][b], angle[2][c]});
@@ -277,6 +278,11 @@ WorkspaceVolume finer_count(WorkspaceVolume volume, const LatticeSweep& sweep) {
   volume.value = sweep.volume;
   volume.spacing = sweep.spacing;
   return volume;
+}
+
+double counting_error(const WorkspaceVolume& volume, const LatticeSweep& sweep) {
+  if (volume.method == WorkspaceVolume::Method::lattice) return volume.error_estimate;
+  return volume.error_estimate + std::abs(sweep.volume + sweep.area - volume.value);
 }
 
 }  // namespace zwidth

@@ -23,16 +23,4 @@ struct ApparentMass {
 };
 ApparentMass apparent_mass(const ToolMatrix& cartesian_mass);
 
-/// Apparent mass and gravity torque over the workspace, on a lattice.
-struct InertiaSweep {
-  double spacing = 0.0;  ///< [m]
-  std::int64_t inside = 0;
-  bool complete = true;
-  std::array<Statistic, 3> along_axes;  ///< [kg]
-  Statistic lightest;                   ///< [kg]
-  Statistic heaviest;                   ///< [kg]
-  Statistic gravity_torque;             ///< largest |gravity torque| of the joints [N m]
-};
-InertiaSweep sweep_inertia(const Mechanism& mechanism, double spacing, const Effort& effort = {});
-
 }  // namespace zwidth

@@ -8,10 +8,12 @@
 #include <cmath>
 #include <limits>
 
+#include "zwidth/analysis/internal/climb.h"
 #include "zwidth/analysis/internal/lattice.h"
 #include "zwidth/analysis/internal/parallel.h"
 #include "zwidth/analysis/internal/posture_statistic.h"
 #include "zwidth/analysis/internal/probe.h"
+#include "zwidth/analysis/internal/quantiles.h"
 #include "zwidth/mechanism/dynamics.h"
 #include "zwidth/mechanism/vibration.h"
 
@@ -95,14 +97,34 @@ std::optional<double> acceleration_of(const Posture& posture, const Drives& driv
   return std::max(0.0, least);
 }
 
+// A figure, with masses that are too large to be moved as infinite.
+double climbed(const MechanicalValues& values, std::size_t f) {
+  const auto first = static_cast<std::size_t>(MechanicalFigure::mass_x),
+             last = static_cast<std::size_t>(MechanicalFigure::heaviest);
+  const bool mass = f >= first && f <= last;
+  if (mass && std::isnan(values[f]) && std::isfinite(figure(values, MechanicalFigure::lightest)))
+    return std::numeric_limits<double>::infinity();
+  return values[f];
+}
+
 struct Builders {
   std::int64_t inside = 0;
   std::array<internal::StatisticBuilder, kMechanicalFigureCount> figures;
+  std::array<std::vector<double>, kMechanicalFigureCount> values;
 
-  void add(const MechanicalValues& values, const Vector3& at) {
+  void add(const MechanicalValues& of_one, const Vector3& at) {
     ++inside;
-    for (std::size_t f = 0; f < values.size(); ++f) {
-      if (std::isfinite(values[f])) figures[f].add(values[f], at);
+    for (std::size_t f = 0; f < of_one.size(); ++f) {
+      if (!std::isfinite(of_one[f])) continue;
+      figures[f].add(of_one[f], at);
+      values[f].push_back(of_one[f]);
+    }
+  }
+  void add(const Builders& other) {
+    inside += other.inside;
+    for (std::size_t f = 0; f < kMechanicalFigureCount; ++f) {
+      figures[f].add(other.figures[f]);
+      values[f].insert(values[f].end(), other.values[f].begin(), other.values[f].end());
     }
   }
 };
@@ -139,6 +161,7 @@ const FigureInfo& mechanical_figure_info(int index) {
       {"frequency_held", "rad/s", "lowest natural frequency, motors held"},
       {"frequency_free", "rad/s", "lowest natural frequency, motors free"},
       {"acceleration", "m/s^2", "acceleration in every direction"},
+      {"gravity_torque", "N m", "torque against gravity"},
   }};
   return kInfo[static_cast<std::size_t>(index)];
 }
@@ -174,6 +197,8 @@ MechanicalValues mechanical_figures(const Posture& posture, const Drives& drives
   }
 
   const Rates rate = rates(posture);
+  if (!mechanism.bodies().empty())
+    put(values, MechanicalFigure::gravity_torque, 0, gravity_torques(posture, rate).cwiseAbs().maxCoeff());
   ActiveMatrix M = mass_matrix(posture, rate);
   if (!(M.diagonal().minCoeff() > 0.0)) return values;
   put_masses(mechanism, tool_mobility(rate.tool, M), values);
@@ -200,8 +225,9 @@ MechanicalSweep sweep_mechanics(const Mechanism& mechanism, const Drives& drives
   std::vector<Builders> planes(static_cast<std::size_t>(internal::size(box[0])));
   MechanicalSweep sweep;
   sweep.spacing = spacing;
+  const internal::Probe fresh(mechanism);
   sweep.complete = internal::for_each_index(planes.size(), effort, [&](std::size_t index) {
-    internal::Probe probe(mechanism);
+    internal::Probe probe = fresh;
     const double x = static_cast<double>(box[0].first + static_cast<std::int64_t>(index)) * spacing;
     for (std::int64_t j = box[1].first; j <= box[1].last; ++j) {
       if (probe.dimension() == 3) probe.restart();
@@ -214,14 +240,40 @@ MechanicalSweep sweep_mechanics(const Mechanism& mechanism, const Drives& drives
     }
   });
   Builders total;
-  for (const Builders& plane : planes) {
-    total.inside += plane.inside;
-    for (std::size_t f = 0; f < kMechanicalFigureCount; ++f) total.figures[f].add(plane.figures[f]);
-  }
+  for (const Builders& plane : planes) total.add(plane);
   sweep.inside = total.inside;
   if (total.figures[static_cast<std::size_t>(MechanicalFigure::softest)].result().count > 0)
     sweep.of = elasticity_of(mechanism, drives);
-  for (std::size_t f = 0; f < kMechanicalFigureCount; ++f) sweep.figures[f] = total.figures[f].result();
+  for (std::size_t f = 0; f < kMechanicalFigureCount; ++f) {
+    sweep.figures[f] = total.figures[f].result();
+    internal::put_quantiles(total.values[f], sweep.figures[f]);
+  }
+  if (!sweep.complete) return sweep;
+  const Effort quiet{.threads = effort.threads, .cancel = effort.cancel};
+  sweep.complete = internal::for_each_index(kMechanicalFigureCount, quiet, [&](std::size_t f) {
+    Statistic& statistic = sweep.figures[f];
+    if (statistic.count == 0) return;
+    internal::Probe probe = fresh;
+    const auto joints_at = [&probe](const Vector3& place) {
+      probe.restart();
+      return ActiveVector(probe.inverse(place).joints.head(probe.dimension()));
+    };
+    const auto place_of = [&probe](const ActiveVector& joints) -> Vector3 {
+      Vector3 all = Vector3::Zero();
+      all.head(joints.size()) = joints;
+      return probe.forward(all).position;
+    };
+    const auto figure = [&](const ActiveVector& joints) {
+      Vector3 all = Vector3::Zero();
+      all.head(joints.size()) = joints;
+      const internal::Probe::Answer answer = probe.forward(all);
+      if (!answer.inside) return kUnknown;
+      const std::optional<Posture> posture = probe.posture(answer.position);
+      return posture ? climbed(mechanical_figures(*posture, drives), f) : kUnknown;
+    };
+    const ActiveVector least = joints_at(statistic.min_at), largest = joints_at(statistic.max_at);
+    internal::refine(statistic, mechanism, least, largest, figure, place_of);
+  });
   return sweep;
 }
 
@@ -232,9 +284,10 @@ std::vector<MechanicalValues> map_mechanics(const Mechanism& mechanism, const Dr
   MechanicalValues nothing;
   nothing.fill(kUnknown);
   std::vector<MechanicalValues> map(positions.size(), nothing);
+  const internal::Probe fresh(mechanism);
   const bool complete =
       internal::for_each_index((positions.size() + kBlock - 1) / kBlock, effort, [&](std::size_t block) {
-        internal::Probe probe(mechanism);
+        internal::Probe probe = fresh;
         const std::size_t end = std::min(positions.size(), (block + 1) * kBlock);
         for (std::size_t p = block * kBlock; p < end; ++p) {
           if (!probe.inverse(positions[p]).inside) continue;
@@ -246,19 +299,50 @@ std::vector<MechanicalValues> map_mechanics(const Mechanism& mechanism, const Dr
 }
 
 MechanicalPostures sweep_mechanics_of_postures(const Mechanism& mechanism, const Drives& drives,
-                                               std::int64_t samples) {
+                                               std::int64_t samples, const Effort& effort) {
+  constexpr std::int64_t kBlock = 64;
+  struct Found {
+    ActiveVector at;
+    MechanicalValues values;
+  };
+  std::vector<std::vector<Found>> blocks(static_cast<std::size_t>((samples + kBlock - 1) / kBlock));
   MechanicalPostures sweep;
-  for (std::int64_t sample = 0; sample < samples; ++sample) {
-    const Solution solution = solve_forward(mechanism, spread_posture(mechanism, sample));
-    if (!solution) continue;
-    ++sweep.solved;
-    const MechanicalValues values = mechanical_figures(*solution.posture, drives);
-    const ActiveVector at = solution.posture->active();
-    for (std::size_t f = 0; f < values.size(); ++f) {
-      if (std::isfinite(values[f])) internal::add(sweep.figures[f], values[f], at);
+  sweep.complete = internal::for_each_index(blocks.size(), effort, [&](std::size_t b) {
+    const std::int64_t first = static_cast<std::int64_t>(b) * kBlock;
+    for (std::int64_t sample = first; sample < std::min(first + kBlock, samples); ++sample) {
+      const Solution solution = solve_forward(mechanism, spread_posture(mechanism, sample));
+      if (solution && solution.status != SolveStatus::joint_limit)
+        blocks[b].push_back({solution.posture->active(), mechanical_figures(*solution.posture, drives)});
+    }
+  });
+  std::array<std::vector<double>, kMechanicalFigureCount> values;
+  for (const std::vector<Found>& block : blocks) {
+    for (const Found& one : block) {
+      ++sweep.solved;
+      for (std::size_t f = 0; f < kMechanicalFigureCount; ++f) {
+        if (!std::isfinite(one.values[f])) continue;
+        internal::add(sweep.figures[f], one.values[f], one.at);
+        values[f].push_back(one.values[f]);
+      }
     }
   }
   if (sweep[MechanicalFigure::softest].count > 0) sweep.of = elasticity_of(mechanism, drives);
+  for (std::size_t f = 0; f < kMechanicalFigureCount; ++f) internal::put_quantiles(values[f], sweep.figures[f]);
+  if (!sweep.complete) return sweep;
+  const Effort quiet{.threads = effort.threads, .cancel = effort.cancel};
+  sweep.complete = internal::for_each_index(kMechanicalFigureCount, quiet, [&](std::size_t f) {
+    std::optional<Posture> last;
+    const auto figure = [&](const ActiveVector& joints) {
+      const SolveOptions follow{.start = last ? &*last : nullptr, .restart = false, .max_iterations = 60};
+      const Solution solution = solve_forward(mechanism, joints, last ? follow : SolveOptions{});
+      if (!solution || solution.status == SolveStatus::joint_limit) return kUnknown;
+      last = *solution.posture;
+      return climbed(mechanical_figures(*last, drives), f);
+    };
+    const ActiveVector least = sweep.figures[f].min_at, largest = sweep.figures[f].max_at;
+    internal::refine(sweep.figures[f], mechanism, least, largest, figure,
+                     [](const ActiveVector& joints) { return joints; });
+  });
   return sweep;
 }
 
@@ -315,20 +399,6 @@ void add_mechanics(const Mechanism& mechanism, const Drives& drives, WorkspaceMa
   for (const MechanicalValues& values : found) {
     for (const std::size_t f : known) map.more.push_back(values[f]);
   }
-}
-
-double fitting_spacing(const Extents& extents, double least, double most_points) {
-  const auto points = [&](double h) {
-    const Vector3 size = extents.size();
-    return (size.x() / h + 1.0) * (size.y() / h + 1.0) * (size.z() / h + 1.0);
-  };
-  double spacing = least;
-  while (points(spacing) > most_points) {
-    const double power = std::pow(10.0, std::floor(std::log10(spacing) + 1e-9));
-    const double digit = spacing / power;
-    spacing = power * (digit < 1.999 ? 2.0 : digit < 4.999 ? 5.0 : 10.0);
-  }
-  return spacing;
 }
 
 }  // namespace zwidth

@@ -30,8 +30,9 @@ enum class MechanicalFigure {
   frequency_free,  ///< the same, rotors swinging against the tool [rad/s]
   acceleration,    ///< that the continuous torques give in every direction, from rest and with the device's own
                    ///< weight; 0 where that takes all of them [m/s^2]
+  gravity_torque,  ///< largest that holds the device's own weight, of all joints [N m], of sliding joints [N]
 };
-inline constexpr int kMechanicalFigureCount = 13;
+inline constexpr int kMechanicalFigureCount = 14;
 
 /// One value per figure, NaN where it is not known or not defined.
 using MechanicalValues = std::array<double, kMechanicalFigureCount>;
@@ -57,13 +58,15 @@ struct KnownStiffness {
 /// Nothing where neither links nor drives are known to give (`Stiffness::rigid`): the source does not say.
 std::optional<KnownStiffness> known_stiffness(const Posture& posture, const Drives& drives);
 
-/// Masses are known if every joint moves some (`drive_inertia` counts), frequencies if links and platform alone
-/// do, the acceleration if every joint that is not moved by the hand has its drive. Stiffness has no value
-/// where the tool is free, nor a mass where it cannot move (beyond
-/// a million times the lightest counts as infinite).
+/// Masses are known if every joint moves some (`drive_inertia` counts), the torque against gravity if anything
+/// has mass, frequencies if links and platform alone do, the acceleration if every joint that is not moved by
+/// the hand has its drive. Stiffness has no value where the tool is free, nor a mass where it cannot move
+/// (beyond a million times the lightest counts as infinite).
 MechanicalValues mechanical_figures(const Posture& posture, const Drives& drives);
 
-/// Over the points of a lattice in the workspace.
+/// Over the points of a lattice in the workspace. Extremes are led from there to where they are, as by
+/// `refine_extremes`. Means of masses and of the largest stiffness do not settle on any lattice where singular
+/// postures lie at its edge: medians and percentiles do.
 struct MechanicalSweep {
   double spacing = 0.0;  ///< [m]
   std::int64_t inside = 0;
@@ -102,19 +105,20 @@ MechanicalCut cut_mechanics(const Mechanism& mechanism, const Drives& drives, co
 void add_mechanics(const Mechanism& mechanism, const Drives& drives, WorkspaceMap& map,
                    const Effort& effort = {});
 
-/// A lattice spacing not below `least` with which a box around the workspace has at most `most_points` points:
-/// 1, 2 or 5 times a power of ten, or `least` [m].
-double fitting_spacing(const Extents& extents, double least, double most_points);
+/// Points in the box of a lattice for such sweeps, whose points cost some 10 us each.
+inline constexpr double kMechanicalPoints = 2e4;
 
-/// Over postures spread evenly over the joint ranges: for tools that also turn.
+/// Over postures spread evenly over the joint ranges, for tools that also turn; as over a lattice.
 struct MechanicalPostures {
   std::int64_t solved = 0;       ///< of them the loops closed
+  bool complete = true;          ///< false if it was cancelled
   std::optional<Elasticity> of;  ///< what gives; nothing if the source does not say
   std::array<PostureStatistic, kMechanicalFigureCount> figures;
 
   const PostureStatistic& operator[](MechanicalFigure which) const { return figures[static_cast<int>(which)]; }
 };
+/// The same for any number of threads.
 MechanicalPostures sweep_mechanics_of_postures(const Mechanism& mechanism, const Drives& drives,
-                                               std::int64_t samples = 1000);
+                                               std::int64_t samples = 4000, const Effort& effort = {});
 
 }  // namespace zwidth

@@ -7,6 +7,9 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "zwidth/analysis/internal/any_orientation.h"
+#include "zwidth/analysis/internal/lattice.h"
+#include "zwidth/analysis/internal/loads.h"
 #include "zwidth/analysis/internal/parallel.h"
 #include "zwidth/analysis/internal/pose_flood.h"
 #include "zwidth/analysis/internal/pose_guide.h"
@@ -78,71 +81,76 @@ double fitting_spacing(const PoseFlood& coarse, double points) {
 
 class Figures {
  public:
-  enum { translation, rotation, homogeneous, count };
+  enum {
+    translation,
+    rotation,
+    homogeneous,
+    weakest_force,
+    weakest_moment,
+    force,
+    moment = force + 3,
+    count = moment + 3
+  };
 
-  Figures(const PoseGuide& guide) : guide_(guide), units_(jacobian_units(guide.mechanism())) {
-    units_.linear_rows = static_cast<int>(guide.moves().size());
+  Figures(const PoseGuide& guide, const PoseWorkspaceOptions& options)
+      : guide_(guide), options_(options), scale_(jacobian_scale(guide.mechanism())) {
+    scale_.units.linear_rows = static_cast<int>(guide.moves().size());
   }
 
-  Jacobian rows(const Rates& rates) const { return guide_.rows(rates.tool); }
-  void set_length(double length) { length_ = length; }
-  double length() const { return length_; }
-  const JacobianUnits& units() const { return units_; }
+  double length() const { return scale_.length; }
 
-  void fill(const Rates& rates, std::span<double> values) const {
-    const Jacobian J = rows(rates);
-    const Eigen::Index linear = units_.linear_rows, angular = J.rows() - linear;
-    const auto figure = [](const Jacobian& part) { return 1.0 / dexterity(part).condition_number; };
+  void fill(const Posture& posture, const Rates& rates, std::span<double> values) const {
+    std::ranges::fill(values, kNone);
+    if (options_.torque) fill_loads(rates.tool, options_.torque(posture), values);
+    const Jacobian J = guide_.rows(rates.tool);
+    const Eigen::Index linear = scale_.units.linear_rows, angular = J.rows() - linear;
+    const auto figure = [this](const Jacobian& part) {
+      return 1.0 / dexterity(scale_.homogeneous_rows(part)).condition_number;
+    };
     values[translation] = linear > 0 ? figure(J.topRows(linear)) : kNone;
     values[rotation] = angular > 1 ? figure(J.bottomRows(angular)) : kNone;
-    values[homogeneous] =
-        linear > 0 && angular > 0 ? figure(zwidth::homogeneous(J, units_, length_)) : values[translation];
+    values[homogeneous] = linear > 0 && angular > 0 ? 1.0 / scale_.condition_number(J) : values[translation];
   }
 
  private:
+  void fill_loads(const Jacobian& tool, const TorqueRange& range, std::span<double> values) const {
+    const Mechanism& mechanism = guide_.mechanism();
+    const Eigen::Index linear = mechanism.linear_rows(), angular = tool.rows() - linear;
+    const auto fill_kind = [&](const Jacobian& rows, Eigen::Index first, int along, int weakest) {
+      for (Eigen::Index r = 0; r < rows.rows(); ++r) {
+        const int axis = mechanism.tool_axes()[static_cast<std::size_t>(first + r)] % 3;
+        values[static_cast<std::size_t>(along + axis)] = internal::axis_load(rows, range, r);
+      }
+      values[static_cast<std::size_t>(weakest)] = internal::weakest_load(rows, range);
+    };
+    if (linear > 0) fill_kind(tool.topRows(linear), 0, force, weakest_force);
+    if (angular > 0) fill_kind(tool.bottomRows(angular), linear, moment, weakest_moment);
+  }
+
   const PoseGuide& guide_;
-  JacobianUnits units_;
-  double length_ = 1.0;
+  const PoseWorkspaceOptions& options_;
+  JacobianScale scale_;
 };
 
-// One length for the postures of a coarse lattice.
-double length_over(const PoseGuide& guide, const PoseChart& chart, const PoseFlood& coarse, const Posture& seed,
-                   const Figures& figures, const Effort& effort) {
-  constexpr std::size_t kSamples = 250;
-  std::vector<Jacobian> jacobians(std::min(kSamples, coarse.points.size()));
-  internal::for_each_index(jacobians.size(), {.threads = effort.threads}, [&](std::size_t n) {
-    const std::size_t p = n * coarse.points.size() / jacobians.size();
-    const PoseGuide::Step step = guide.step(seed, chart.at(coarse.coordinates(coarse.points[p])));
-    if (step.inside) jacobians[n] = figures.rows(step.rates);
-  });
-  std::erase_if(jacobians, [](const Jacobian& J) { return J.size() == 0; });
-  if (jacobians.empty()) return guide.mechanism().characteristic_length();
-  return characteristic_length(jacobians, figures.units()).length;
+Statistic statistic_of(const PoseChart& chart, const PoseFlood& flood, const std::vector<std::size_t>& order,
+                       int figure) {
+  internal::StatisticBuilder builder;
+  const std::vector<double>& values = flood.values[static_cast<std::size_t>(figure)];
+  for (const std::size_t p : order) {
+    if (!std::isnan(values[p])) builder.add(values[p], chart.at(flood.coordinates(flood.points[p])).position);
+  }
+  return builder.result();
 }
 
 PoseConditioning conditioning_of(const PoseChart& chart, const PoseFlood& flood,
                                  const std::vector<std::size_t>& order, int figure) {
-  PoseConditioning result;
-  Statistic& statistic = result.figure;
+  PoseConditioning result{.of_all = {}, .figure = statistic_of(chart, flood, order, figure)};
   const std::vector<double>& values = flood.values[static_cast<std::size_t>(figure)];
-  double sum = 0.0;
   for (const std::size_t p : order) {
     const double value = values[p];
-    if (std::isnan(value)) continue;
-    result.of_all.add(value > 0.0 ? 1.0 / value : std::numeric_limits<double>::infinity());
-    const Vector3 at = chart.at(flood.coordinates(flood.points[p])).position;
-    if (statistic.count == 0 || value < statistic.min) {
-      statistic.min = value;
-      statistic.min_at = at;
-    }
-    if (statistic.count == 0 || value > statistic.max) {
-      statistic.max = value;
-      statistic.max_at = at;
-    }
-    ++statistic.count;
-    sum += value;
+    if (!std::isnan(value))
+      result.of_all.add(value > 0.0 ? 1.0 / value : std::numeric_limits<double>::infinity());
   }
-  if (statistic.count > 0) statistic.mean = sum / static_cast<double>(statistic.count);
   return result;
 }
 
@@ -272,12 +280,13 @@ double farthest(PoseRegion& region, const PoseFlood& flood, int axis, bool up, b
 ReachSlice slice_of(const PoseGuide& guide, const Pose& through, const Posture& seed, int u, int v, int normal,
                     double spacing, const Figures& figures, const Effort& effort) {
   const PoseChart chart{.origin = through, .axes = {u, v}};
-  const PoseFlood flood = flood_poses(
-      guide, chart, seed, chart.coordinates(through.position),
-      {.spacing = spacing,
-       .figures = Figures::count,
-       .figure = [&](const Posture&, const Rates& rates, std::span<double> row) { figures.fill(rates, row); }},
-      effort);
+  const PoseFlood flood =
+      flood_poses(guide, chart, seed, chart.coordinates(through.position),
+                  {.spacing = spacing,
+                   .figures = Figures::count,
+                   .figure = [&](const Posture& posture, const Rates& rates,
+                                 std::span<double> row) { figures.fill(posture, rates, row); }},
+                  effort);
   ReachSlice cut{.slice = {.axis = normal, .at = through.position[normal], .u = u, .v = v}, .conditioning = {}};
   if (flood.points.empty()) return cut;
   const internal::RegionLattice lattice = lattice_of(flood);
@@ -344,13 +353,6 @@ Interval turn_about(const PoseGuide& guide, const Pose& origin, int axis, const 
   return range;
 }
 
-// Of all orientations, per rotation vector: those within a turn of pi add up to 1.
-double orientation_density(const Vector3& turn) {
-  const double angle = turn.norm();
-  const double ratio = angle < 1e-4 ? 1.0 : 2.0 * (1.0 - std::cos(angle)) / (angle * angle);
-  return ratio / (8.0 * pi * pi);
-}
-
 void turn_round(const PoseGuide& guide, const Posture& seed, TurningRange& turning, const Effort& effort) {
   const Pose& origin = seed.tool();
   for (const int axis : guide.turns()) turning.about[axis - 3] = turn_about(guide, origin, axis, seed);
@@ -365,9 +367,73 @@ void turn_round(const PoseGuide& guide, const Posture& seed, TurningRange& turni
   const PoseFlood flood = flood_poses(
       guide, chart, seed, Vector3::Zero(),
       {.spacing = fitting_spacing(first.flood, kOrientations), .most = kMostPlaces, .most_radius = pi}, effort);
-  const internal::FloodMeasure share = internal::measure(flood, orientation_density);
+  const internal::FloodMeasure share = internal::measure(flood, internal::orientation_density);
   turning.share = share.value;
   turning.share_error = share.error_estimate;
+}
+
+// ------------------------------------------------------------------------------------------- any orientation
+
+// As many places as suit, from how many there are in one orientation.
+AnyOrientation any_orientation(const PoseGuide& guide, const PoseFlood& flood, std::int64_t places,
+                               const Effort& effort) {
+  constexpr double kMore = 3.0;  // times as many places as in one orientation
+  const int dimension = guide.moves().empty() ? 0 : static_cast<int>(guide.moves().size());
+  const double wanted = static_cast<double>(places) / (dimension == 3 ? 1.0 : 4.0);
+  AnyOrientation any{.spacing = fitting_spacing(flood, wanted / kMore)};
+  const int stride = dimension == 1 ? 5 : 3;  // of the places where the tool is turned
+  const Matrix3& upright = guide.home().tool().rotation;
+  const auto turn = [&](const Posture& posture, const Rates&, std::span<double> row) {
+    std::ranges::fill(row, kNone);
+    for (const int axis : guide.moves()) {
+      const auto index = std::lround(posture.tool().position[axis] / any.spacing);
+      if (index % stride != 0) return;
+    }
+    const internal::TurnedPlace here = internal::turn_at(guide, posture, upright);
+    row[0] = here.share;
+    row[1] = here.every_way;
+  };
+  const PoseFlood reached = internal::flood_places(
+      guide,
+      {.spacing = any.spacing, .most = static_cast<std::size_t>(8 * places), .figures = 2, .figure = turn},
+      effort);
+  any.inside = static_cast<std::int64_t>(reached.points.size());
+  const internal::FloodMeasure measure = internal::measure(reached);
+  any.measure = measure.value;
+  any.error_estimate = measure.error_estimate;
+  const PoseChart chart{.origin = guide.home().tool(), .axes = guide.moves()};
+  std::vector<double> shares, every_way;
+  for (std::size_t p = 0; p < reached.points.size(); ++p) {
+    const Vector3 at = chart.at(reached.coordinates(reached.points[p])).position;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double value = at[static_cast<Eigen::Index>(k)];
+      any.range[k] = p == 0 ? Interval{value, value}
+                            : Interval{std::min(any.range[k].min, value), std::max(any.range[k].max, value)};
+    }
+    if (std::isnan(reached.values[1][p])) continue;
+    every_way.push_back(reached.values[1][p]);
+    if (!std::isnan(reached.values[0][p])) shares.push_back(reached.values[0][p]);
+  }
+  any.places = static_cast<int>(every_way.size());
+  std::ranges::sort(shares);
+  if (!shares.empty()) {
+    AnyOrientation::Spread& share = any.share.emplace();
+    for (const double value : shares) share.mean += value / static_cast<double>(shares.size());
+    share.least = shares.front();
+    share.most = shares.back();
+  }
+  constexpr std::array kAngles = {10.0, 20.0, 30.0, 45.0};  // [deg]
+  for (std::size_t k = 0; k < kAngles.size() && any.places > 0; ++k) {
+    AnyOrientation::Turned& turned = any.turned[k];
+    turned.angle = kAngles[k] * pi / 180.0;
+    const auto n = static_cast<double>(any.places);
+    const double part = static_cast<double>(std::ranges::count_if(
+                            every_way, [&](double angle) { return angle >= turned.angle; })) /
+                        n;
+    turned.measure = part * any.measure;
+    turned.error = any.measure * std::sqrt(part * (1.0 - part) / n);
+  }
+  return any;
 }
 
 // A posture with the tool in an orientation: at home, or at the place of a first look that is nearest to it.
@@ -451,17 +517,17 @@ PoseWorkspace pose_workspace(const Mechanism& mechanism, const PoseWorkspaceOpti
   if (expected > static_cast<double>(kMostPlaces))
     throw std::length_error("a lattice this fine has more than two million points in the workspace");
 
-  Figures figures(guide);
-  figures.set_length(length_over(guide, chart, first.flood, *seed, figures, quiet));
+  const Figures figures(guide, options);
   workspace.characteristic_length = figures.length();
-  const PoseFlood flood = flood_poses(
-      guide, chart, *seed, from,
-      {.spacing = workspace.spacing,
-       .most = 2 * kMostPlaces,
-       .figures = Figures::count,
-       .figure = [&](const Posture&, const Rates& rates, std::span<double> row) { figures.fill(rates, row); },
-       .expected = static_cast<std::size_t>(expected)},
-      report(0.05, 0.6));
+  const PoseFlood flood =
+      flood_poses(guide, chart, *seed, from,
+                  {.spacing = workspace.spacing,
+                   .most = 2 * kMostPlaces,
+                   .figures = Figures::count,
+                   .figure = [&](const Posture& posture, const Rates& rates,
+                                 std::span<double> row) { figures.fill(posture, rates, row); },
+                   .expected = static_cast<std::size_t>(expected)},
+                  report(0.05, 0.6));
   workspace.complete = flood.complete;
   workspace.inside = static_cast<std::int64_t>(flood.points.size());
   if (!workspace.complete || flood.points.empty()) return workspace;
@@ -476,6 +542,12 @@ PoseWorkspace pose_workspace(const Mechanism& mechanism, const PoseWorkspaceOpti
   workspace.translation = conditioning_of(chart, flood, order, Figures::translation);
   workspace.rotation = conditioning_of(chart, flood, order, Figures::rotation);
   workspace.homogeneous = conditioning_of(chart, flood, order, Figures::homogeneous);
+  for (std::size_t k = 0; k < 3 && options.torque; ++k) {
+    workspace.force[k] = statistic_of(chart, flood, order, Figures::force + static_cast<int>(k));
+    workspace.moment[k] = statistic_of(chart, flood, order, Figures::moment + static_cast<int>(k));
+  }
+  workspace.weakest_force = statistic_of(chart, flood, order, Figures::weakest_force);
+  workspace.weakest_moment = statistic_of(chart, flood, order, Figures::weakest_moment);
   const internal::FloodMeasure measure = internal::measure(flood);
   workspace.measure = measure.value;
   workspace.error_estimate = measure.error_estimate;
@@ -518,6 +590,8 @@ PoseWorkspace pose_workspace(const Mechanism& mechanism, const PoseWorkspaceOpti
       }
     }
   }
+  if (options.any_places > 0 && !guide.turns().empty())
+    workspace.any = any_orientation(guide, flood, options.any_places, report(0.9, 1.0));
   if (effort.progress) effort.progress(1.0);
   workspace.complete = effort.cancel == nullptr || !effort.cancel->load();
   return workspace;

@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "zwidth/analysis/contour.h"
 #include "zwidth/analysis/dexterity.h"
+#include "zwidth/analysis/force.h"
 #include "zwidth/analysis/reach_shapes.h"
 #include "zwidth/analysis/workspace.h"
 
@@ -28,13 +30,41 @@ struct PoseWorkspaceOptions {
   bool shapes = true;   ///< find the largest sphere and cube, and the ends of the ranges more closely
   bool turning = true;  ///< find how the tool turns
   std::optional<Vector3> position;  ///< where it is turned [m]; without, the home position
-  int slice_points = 101;           ///< along the longer side of a cut; 0 leaves the cuts out
+  std::int64_t any_places =
+      0;  ///< find about as many in any orientation, a quarter in a plane; 0 leaves that out
+  /// What the drives may give in a posture; without it forces and moments are left out.
+  std::function<TorqueRange(const Posture&)> torque;
+  int slice_points = 101;  ///< along the longer side of a cut; 0 leaves the cuts out
 };
 
 /// How well conditioned the Jacobian is over the places; each stands for an equal volume or area.
 struct PoseConditioning {
   GlobalConditioning of_all;
   Statistic figure;  ///< 1/(condition number), with the tool positions of least and largest
+};
+
+/// Where the tool can be led to in whatever orientation, turning on the way as it needs to, and how it can be
+/// turned there.
+struct AnyOrientation {
+  double spacing = 0.0;             ///< of the lattice [m]
+  std::int64_t inside = 0;          ///< lattice points
+  double measure = 0.0;             ///< as the workspace's [m^3, m^2, m]
+  double error_estimate = 0.0;      ///< of `measure`
+  std::array<Interval, 3> range{};  ///< of the lattice points [m]
+  int places = 0;                   ///< of them, evenly spread, where the tool was turned
+  /// Of all orientations (in a plane of all angles), those that it can be turned to there; empty if it turns in
+  /// two ways.
+  struct Spread {
+    double mean = 0.0, least = 0.0, most = 0.0;
+  };
+  std::optional<Spread> share;
+  /// Where it can be turned this far about every axis, away from the home orientation.
+  struct Turned {
+    double angle = 0.0;    ///< [rad]
+    double measure = 0.0;  ///< [m^3, m^2, m]
+    double error = 0.0;    ///< standard, of the places drawn
+  };
+  std::array<Turned, 4> turned{};
 };
 
 /// How the tool can be turned at one place, away from one orientation.
@@ -54,18 +84,25 @@ struct PoseWorkspace {
   bool reached = false;    ///< some place was found in this orientation; the rest means nothing otherwise
   bool unbounded = false;  ///< it does not end within a thousand times the mechanism's length; likewise
   Matrix3 orientation = Matrix3::Identity();
-  Vector3 from = Vector3::Zero();      ///< the place that the search began at [m]
-  std::vector<int> axes;               ///< that the tool can move along without turning: 0 x, 1 y, 2 z
-  double spacing = 0.0;                ///< of the lattice [m]
-  std::int64_t inside = 0;             ///< lattice points
-  double measure = 0.0;                ///< volume [m^3], of two axes area [m^2], of one length [m]
-  double error_estimate = 0.0;         ///< of `measure`
-  std::array<Interval, 3> range{};     ///< ends along each axis, to some 1e-4 of the size [m]
-  InscribedShapes inscribed;           ///< of three axes sphere and cube, of two circle and square
-  PoseConditioning translation;        ///< of the linear rows
-  PoseConditioning rotation;           ///< of the angular rows; empty if there are fewer than two
-  PoseConditioning homogeneous;        ///< of all, angular rows times the characteristic length
-  double characteristic_length = 0.0;  ///< that makes the last one's mean largest [m]
+  Vector3 from = Vector3::Zero();   ///< the place that the search began at [m]
+  std::vector<int> axes;            ///< that the tool can move along without turning: 0 x, 1 y, 2 z
+  double spacing = 0.0;             ///< of the lattice [m]
+  std::int64_t inside = 0;          ///< lattice points
+  double measure = 0.0;             ///< volume [m^3], of two axes area [m^2], of one length [m]
+  double error_estimate = 0.0;      ///< of `measure`
+  std::array<Interval, 3> range{};  ///< ends along each axis, to some 1e-4 of the size [m]
+  InscribedShapes inscribed;        ///< of three axes sphere and cube, of two circle and square
+  PoseConditioning translation;     ///< of the linear rows
+  PoseConditioning rotation;        ///< of the angular rows; empty if there are fewer than two
+  PoseConditioning homogeneous;     ///< of all, angular rows times the characteristic length
+  // Over the places, of the continuous torques; empty without `torque`, or for a tool that does not move, or
+  // turn, so.
+  std::array<Statistic, 3> force;   ///< largest pure force along x, y, z, whichever way is weaker [N]
+  Statistic weakest_force;          ///< available in every direction [N]
+  std::array<Statistic, 3> moment;  ///< [N m]
+  Statistic weakest_moment;         ///< [N m]
+  std::optional<AnyOrientation> any;
+  double characteristic_length = 0.0;  ///< of the device, see `jacobian_scale` [m]
   /// Through `from`: of three axes normal to each, of two the plane itself; with the largest 1/(condition
   /// number) of the homogeneous Jacobian.
   std::vector<ReachSlice> slices;

@@ -6,7 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "zwidth/analysis/inertia.h"
+#include "zwidth/analysis/internal/climb.h"
+#include "zwidth/analysis/internal/loads.h"
 #include "zwidth/analysis/internal/parallel.h"
 #include "zwidth/analysis/resolution.h"
 #include "zwidth/mechanism/dynamics.h"
@@ -15,7 +16,7 @@ namespace zwidth {
 namespace {
 
 constexpr std::int64_t kBlock = 256;  // samples that one task takes; results do not depend on threads
-constexpr double kSilent = 1e-12;     // a column of J that small against the largest feels no load
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Running minimum, maximum and mean that remembers which sample the extremes belong to.
 class Builder {
@@ -46,7 +47,10 @@ class Builder {
     sum_ += other.sum_;
   }
   PostureStatistic result(const Mechanism& mechanism) const {
-    PostureStatistic statistic{.count = count_, .min = min_, .max = max_};
+    PostureStatistic statistic;
+    statistic.count = count_;
+    statistic.min = min_;
+    statistic.max = max_;
     if (count_ == 0) return statistic;
     statistic.mean = sum_ / static_cast<double>(count_);
     statistic.min_at = spread_posture(mechanism, min_index_);
@@ -59,35 +63,41 @@ class Builder {
   double min_ = 0.0, max_ = 0.0, sum_ = 0.0;
 };
 
+// Figures of a posture, in the order of `statistic_of`.
+enum Value {
+  translation_conditioning,
+  rotation_conditioning,
+  manipulability,
+  weakest_force,
+  weakest_moment,
+  turn_step,
+  gravity_torque,
+  force,
+  moment = force + 3,
+  step = moment + 3,
+  value_count = step + 3
+};
+using Values = std::array<double, value_count>;
+
+PostureStatistic& statistic_of(PostureSweep& sweep, int value) {
+  PostureStatistic* const single[] = {&sweep.translation_conditioning,
+                                      &sweep.rotation_conditioning,
+                                      &sweep.manipulability,
+                                      &sweep.weakest_force,
+                                      &sweep.weakest_moment,
+                                      &sweep.turn_step,
+                                      &sweep.gravity_torque};
+  if (value < force) return *single[value];
+  if (value < moment) return sweep.force[static_cast<std::size_t>(value - force)];
+  return value < step ? sweep.moment[static_cast<std::size_t>(value - moment)]
+                      : sweep.step[static_cast<std::size_t>(value - step)];
+}
+
 struct Block {
   std::int64_t solved = 0;
-  GlobalConditioning translation, rotation;
-  Builder translation_conditioning, rotation_conditioning, manipulability, weakest_force, weakest_moment,
-      turn_step, lightest, heaviest, gravity_torque;
-  std::array<Builder, 3> force, moment, step;
-  std::vector<Jacobian> jacobians;  // some of them, for the characteristic length
+  GlobalConditioning translation, rotation, homogeneous;
+  std::array<Builder, value_count> figures;
 };
-
-// Largest load available in every direction: the nearest face of min_j <= J_j . w <= max_j. Joints that feel no
-// load of these rows do not count.
-double weakest_load(const Jacobian& jacobian, const TorqueRange& range) {
-  const double loudest = jacobian.colwise().norm().maxCoeff();
-  double weakest = std::numeric_limits<double>::infinity();
-  for (Eigen::Index j = 0; j < jacobian.cols(); ++j) {
-    const double norm = jacobian.col(j).norm();
-    if (norm <= kSilent * loudest) continue;
-    weakest = std::min(weakest, std::max(0.0, std::min(range.max[j], -range.min[j])) / norm);
-  }
-  return weakest;
-}
-
-// Largest pure load along an axis, whichever way is weaker.
-double axis_load(const Jacobian& jacobian, const TorqueRange& range, Eigen::Index axis) {
-  ToolVector direction = ToolVector::Unit(jacobian.rows(), axis);
-  const double forwards = load_limit(jacobian, range, direction).value;
-  direction = -direction;
-  return std::min(forwards, load_limit(jacobian, range, direction).value);
-}
 
 // Which of x, y, z a row of one kind means.
 int axis_of(const Mechanism& mechanism, Eigen::Index row) {
@@ -97,78 +107,91 @@ int axis_of(const Mechanism& mechanism, Eigen::Index row) {
 class Sweeper {
  public:
   Sweeper(const Mechanism& mechanism, const PostureSweepOptions& options)
-      : mechanism_(mechanism), options_(options), linear_(mechanism.linear_rows()) {}
+      : mechanism_(mechanism),
+        options_(options),
+        scale_(jacobian_scale(mechanism)),
+        linear_(mechanism.linear_rows()) {}
+
+  const JacobianScale& scale() const { return scale_; }
 
   void sample(std::int64_t index, Block& block) const {
     const Solution solution = solve_forward(mechanism_, spread_posture(mechanism_, index));
     // The active joints are within their ranges: a passive one may not be.
     if (!solution || solution.status == SolveStatus::joint_limit) return;
     ++block.solved;
-    const Posture& posture = *solution.posture;
+    const Values values = values_of(*solution.posture);
+    for (std::size_t v = 0; v < values.size(); ++v) {
+      if (!std::isnan(values[v])) block.figures[v].add(values[v], index);
+    }
+    const auto count = [](GlobalConditioning& conditioning, double inverse) {
+      if (!std::isnan(inverse)) conditioning.add(inverse > 0.0 ? std::max(1.0, 1.0 / inverse) : kInfinity);
+    };
+    count(block.translation, values[translation_conditioning]);
+    count(block.rotation, values[rotation_conditioning]);
+    if (linear_ > 0 && mechanism_.tool_turns())
+      block.homogeneous.add(scale_.condition_number(jacobian(*solution.posture)));
+  }
+
+  // NaN where a figure is not defined.
+  Values values_of(const Posture& posture) const {
+    Values values;
+    values.fill(std::numeric_limits<double>::quiet_NaN());
     const Rates rate = rates(posture);
     const Jacobian linear = rate.tool.topRows(linear_);
     const Jacobian angular = rate.tool.bottomRows(rate.tool.rows() - linear_);
     if (linear_ > 0) {
-      const Dexterity figures = dexterity(linear);
-      block.translation.add(figures.condition_number);
-      block.translation_conditioning.add(1.0 / figures.condition_number, index);
-      block.manipulability.add(figures.manipulability, index);
+      values[translation_conditioning] = 1.0 / dexterity(scale_.homogeneous_rows(linear)).condition_number;
+      values[manipulability] = dexterity(linear).manipulability;
     }
-    if (angular.rows() > 0) {
-      const double condition = dexterity(angular).condition_number;
-      block.rotation.add(condition);
-      block.rotation_conditioning.add(1.0 / condition, index);
-      if (linear_ > 0 && block.jacobians.size() < kJacobiansPerBlock) block.jacobians.push_back(rate.tool);
-    }
-    if (options_.torque) loads(index, options_.torque(posture), linear, angular, block);
-    if (options_.joint_step.size() > 0) steps(index, rate.tool, block);
-    masses(index, posture, rate, linear, block);
+    if (angular.rows() > 0)
+      values[rotation_conditioning] = 1.0 / dexterity(scale_.homogeneous_rows(angular)).condition_number;
+    if (options_.torque) loads(options_.torque(posture), linear, angular, values);
+    if (options_.joint_step.size() > 0) steps(rate.tool, values);
+    if (!mechanism_.bodies().empty())
+      values[gravity_torque] = gravity_torques(posture, rate).cwiseAbs().maxCoeff();
+    return values;
+  }
+
+  // One of them as a function of the joints, which are led from those of the last question.
+  internal::JointFigure figure(int value) const {
+    return [this, value, last = std::optional<Posture>()](const ActiveVector& joints) mutable {
+      const SolveOptions follow{.start = last ? &*last : nullptr, .restart = false, .max_iterations = 60};
+      const Solution solution = solve_forward(mechanism_, joints, last ? follow : SolveOptions{});
+      if (!solution || solution.status == SolveStatus::joint_limit)
+        return std::numeric_limits<double>::quiet_NaN();
+      last = *solution.posture;
+      return values_of(*last)[static_cast<std::size_t>(value)];
+    };
   }
 
  private:
-  static constexpr std::size_t kJacobiansPerBlock = 4;
-
-  void loads(std::int64_t index, const TorqueRange& range, const Jacobian& linear, const Jacobian& angular,
-             Block& block) const {
-    for (Eigen::Index r = 0; r < linear.rows(); ++r) {
-      block.force[axis_of(mechanism_, r)].add(axis_load(linear, range, r), index);
-    }
+  void loads(const TorqueRange& range, const Jacobian& linear, const Jacobian& angular, Values& values) const {
+    for (Eigen::Index r = 0; r < linear.rows(); ++r)
+      values[static_cast<std::size_t>(force + axis_of(mechanism_, r))] = internal::axis_load(linear, range, r);
     for (Eigen::Index r = 0; r < angular.rows(); ++r) {
-      block.moment[axis_of(mechanism_, linear.rows() + r)].add(axis_load(angular, range, r), index);
+      values[static_cast<std::size_t>(moment + axis_of(mechanism_, linear.rows() + r))] =
+          internal::axis_load(angular, range, r);
     }
-    if (linear.rows() > 0) block.weakest_force.add(weakest_load(linear, range), index);
-    if (angular.rows() > 0) block.weakest_moment.add(weakest_load(angular, range), index);
+    if (linear.rows() > 0) values[weakest_force] = internal::weakest_load(linear, range);
+    if (angular.rows() > 0) values[weakest_moment] = internal::weakest_load(angular, range);
   }
 
-  void steps(std::int64_t index, const Jacobian& jacobian, Block& block) const {
-    const ToolVector step = tool_resolution(jacobian, options_.joint_step);
+  void steps(const Jacobian& jacobian, Values& values) const {
+    const ToolVector steps = tool_resolution(jacobian, options_.joint_step);
     double turn = 0.0;
-    for (Eigen::Index r = 0; r < step.size(); ++r) {
+    for (Eigen::Index r = 0; r < steps.size(); ++r) {
       if (r < linear_) {
-        block.step[axis_of(mechanism_, r)].add(step[r], index);
+        values[static_cast<std::size_t>(step + axis_of(mechanism_, r))] = steps[r];
       } else {
-        turn = std::max(turn, step[r]);
+        turn = std::max(turn, steps[r]);
       }
     }
-    if (step.size() > linear_) block.turn_step.add(turn, index);
-  }
-
-  void masses(std::int64_t index, const Posture& posture, const Rates& rate, const Jacobian& linear,
-              Block& block) const {
-    if (!mechanism_.bodies().empty()) {
-      block.gravity_torque.add(gravity_torques(posture, rate).cwiseAbs().maxCoeff(), index);
-    }
-    const ActiveMatrix mass = mass_matrix(posture, rate);
-    // A joint that moves nothing heavy has no apparent mass.
-    if (linear_ == 0 || mass.diagonal().minCoeff() <= 0.0) return;
-    const ApparentMass felt = apparent_mass(cartesian_mass(linear, mass));
-    if (!std::isfinite(felt.heaviest) || felt.lightest <= 0.0) return;
-    block.lightest.add(felt.lightest, index);
-    block.heaviest.add(felt.heaviest, index);
+    if (steps.size() > linear_) values[turn_step] = turn;
   }
 
   const Mechanism& mechanism_;
   const PostureSweepOptions& options_;
+  JacobianScale scale_;
   Eigen::Index linear_;
 };
 
@@ -243,6 +266,13 @@ ActiveVector spread_posture(const Mechanism& mechanism, std::int64_t index) {
   return q;
 }
 
+double spread_coordinate(int n, int k, std::int64_t index) {
+  double share = 1.0;
+  for (int j = 0; j <= k; ++j) share /= golden_ratio(n);
+  const double whole = 0.5 + share * static_cast<double>(index + 1);
+  return whole - std::floor(whole);
+}
+
 void spread_postures(const Mechanism& mechanism, std::int64_t first, std::size_t count, std::span<double> out) {
   const int n = mechanism.active_count();
   const double phi = golden_ratio(n);
@@ -275,43 +305,25 @@ PostureSweep sweep_postures(const Mechanism& mechanism, const PostureSweepOption
     all.solved += block.solved;
     all.translation.add(block.translation);
     all.rotation.add(block.rotation);
-    for (Builder Block::*figure :
-         {&Block::translation_conditioning, &Block::rotation_conditioning, &Block::manipulability,
-          &Block::weakest_force, &Block::weakest_moment, &Block::turn_step, &Block::lightest, &Block::heaviest,
-          &Block::gravity_torque}) {
-      (all.*figure).add(block.*figure);
-    }
-    for (int k = 0; k < 3; ++k) {
-      all.force[k].add(block.force[k]);
-      all.moment[k].add(block.moment[k]);
-      all.step[k].add(block.step[k]);
-    }
-    all.jacobians.insert(all.jacobians.end(), block.jacobians.begin(), block.jacobians.end());
+    all.homogeneous.add(block.homogeneous);
+    for (std::size_t v = 0; v < value_count; ++v) all.figures[v].add(block.figures[v]);
   }
   sweep.solved = all.solved;
   sweep.translation = all.translation;
   sweep.rotation = all.rotation;
-  sweep.translation_conditioning = all.translation_conditioning.result(mechanism);
-  sweep.rotation_conditioning = all.rotation_conditioning.result(mechanism);
-  sweep.manipulability = all.manipulability.result(mechanism);
-  sweep.weakest_force = all.weakest_force.result(mechanism);
-  sweep.weakest_moment = all.weakest_moment.result(mechanism);
-  sweep.turn_step = all.turn_step.result(mechanism);
-  sweep.lightest = all.lightest.result(mechanism);
-  sweep.heaviest = all.heaviest.result(mechanism);
-  sweep.gravity_torque = all.gravity_torque.result(mechanism);
-  for (int k = 0; k < 3; ++k) {
-    sweep.force[k] = all.force[k].result(mechanism);
-    sweep.moment[k] = all.moment[k].result(mechanism);
-    sweep.step[k] = all.step[k].result(mechanism);
+  sweep.homogeneous = all.homogeneous;
+  for (int v = 0; v < value_count; ++v)
+    statistic_of(sweep, v) = all.figures[static_cast<std::size_t>(v)].result(mechanism);
+  if (sweep.complete) {
+    const Effort quiet{.threads = effort.threads, .cancel = effort.cancel};
+    sweep.complete = internal::for_each_index(value_count, quiet, [&](std::size_t v) {
+      PostureStatistic& statistic = statistic_of(sweep, static_cast<int>(v));
+      const ActiveVector least = statistic.min_at, largest = statistic.max_at;
+      internal::refine(statistic, mechanism, least, largest, sweeper.figure(static_cast<int>(v)),
+                       [](const ActiveVector& joints) { return joints; });
+    });
   }
-  if (!all.jacobians.empty()) {
-    const JacobianUnits units = jacobian_units(mechanism);
-    sweep.characteristic_length = characteristic_length(all.jacobians, units).length;
-    for (const Jacobian& J : all.jacobians) {
-      sweep.homogeneous.add(dexterity(homogeneous(J, units, sweep.characteristic_length)).condition_number);
-    }
-  }
+  if (sweeper.scale().mixed) sweep.characteristic_length = sweeper.scale().length;
   return sweep;
 }
 

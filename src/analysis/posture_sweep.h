@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "zwidth/analysis/dexterity.h"
@@ -23,6 +24,8 @@ struct PostureStatistic {
   double mean = 0.0;
   ActiveVector min_at;  ///< active joints of the minimum [rad] or [m]
   ActiveVector max_at;
+  bool unbounded = false;  ///< the figure grows without end towards a singular posture: `max` is what was found
+  std::optional<double> median, percentile_95;  ///< where asked for: half of them, and 95 of 100, stay below
 };
 
 struct PostureSweepOptions {
@@ -32,18 +35,19 @@ struct PostureSweepOptions {
   ActiveVector joint_step;  ///< resolution of each active joint [rad] or [m]; empty leaves the tool's out
 };
 
-/// Forces are pure forces (no moment), moments pure moments. Statistics of moments and turning are empty for a
+/// Forces are pure forces (no moment), moments pure moments. Extremes are led from the postures drawn to the
+/// summits next to them. Statistics of moments and turning are empty for a
 /// tool that does not turn, those of forces for one that only turns.
 struct PostureSweep {
   std::int64_t samples = 0;
   std::int64_t solved = 0;  ///< of them the loops closed
   bool complete = true;     ///< false if it was cancelled
 
-  GlobalConditioning translation;  ///< of the linear rows of J
-  GlobalConditioning rotation;     ///< of the angular rows
-  GlobalConditioning homogeneous;  ///< of all rows, made lengths by `characteristic_length`
-  double characteristic_length =
-      0.0;  ///< the one that makes `homogeneous` largest [m]; 0 unless the tool turns
+  // Of the homogeneous Jacobian, see `jacobian_scale`.
+  GlobalConditioning translation;      ///< of its linear rows
+  GlobalConditioning rotation;         ///< of its angular rows
+  GlobalConditioning homogeneous;      ///< of all rows of a tool that moves and turns
+  double characteristic_length = 0.0;  ///< of the device [m]; 0 if nothing needs it
 
   PostureStatistic translation_conditioning;  ///< 1/(condition number) of the linear rows [-]
   PostureStatistic rotation_conditioning;     ///< of the angular rows [-]
@@ -54,7 +58,6 @@ struct PostureSweep {
   PostureStatistic weakest_moment;            ///< [N m]
   std::array<PostureStatistic, 3> step;       ///< worst tool step along x, y, z [m]
   PostureStatistic turn_step;                 ///< worst turn of the tool about any base axis [rad]
-  PostureStatistic lightest, heaviest;        ///< apparent mass against pure forces, by direction [kg]
   PostureStatistic gravity_torque;            ///< largest |gravity torque| of the joints [N m]
 };
 
@@ -69,6 +72,9 @@ ActiveVector spread_posture(const Mechanism& mechanism, std::int64_t index);
 /// `count` of them from `first` on, joint after joint: out[j count + p]. REQUIRES: out has count active_count()
 /// elements.
 void spread_postures(const Mechanism& mechanism, std::int64_t first, std::size_t count, std::span<double> out);
+
+/// Coordinate `k` of `n` of sample `index` of that sequence, in [0, 1).
+double spread_coordinate(int n, int k, std::int64_t index);
 
 /// How far the tool goes along a direction of the base frame, with the joints in their ranges: by projected
 /// gradient ascent from the best of many postures. [m]

@@ -253,6 +253,7 @@ std::array<ReachSlice, 3> slice_reach(const Mechanism& mechanism, const ReachMap
     double conditioning;
   };
   constexpr std::int64_t kBlock = 4096;
+  const JacobianScale scale = jacobian_scale(mechanism);
   std::vector<std::vector<Hit>> hits(static_cast<std::size_t>((samples + kBlock - 1) / kBlock));
   internal::for_each_index(hits.size(), effort, [&](std::size_t b) {
     const std::int64_t first = static_cast<std::int64_t>(b) * kBlock;
@@ -270,7 +271,7 @@ std::array<ReachSlice, 3> slice_reach(const Mechanism& mechanism, const ReachMap
         if (iu < 0 || iv < 0 || iu >= map.count[layer.u] || iv >= map.count[layer.v]) continue;
         if (conditioning < 0.0) {
           const Jacobian linear = jacobian(*solution.posture).topRows(mechanism.linear_rows());
-          conditioning = 1.0 / dexterity(linear).condition_number;
+          conditioning = 1.0 / dexterity(scale.homogeneous_rows(linear)).condition_number;
         }
         hits[b].push_back({layer.axis, static_cast<std::size_t>(iv * map.count[layer.u] + iu), conditioning});
       }

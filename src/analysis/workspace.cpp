@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
+#include "zwidth/analysis/internal/climb.h"
 #include "zwidth/analysis/internal/lattice.h"
 #include "zwidth/analysis/internal/parallel.h"
 #include "zwidth/analysis/internal/probe.h"
@@ -81,11 +83,10 @@ void find_heights(const DeltaBatch& batch, const IndexRange& k, double h, Lattic
   }
 }
 
-Plane sweep_plane_of_legs(const Mechanism& mechanism, std::int64_t i, const LatticeBox& box,
-                          const LatticeOptions& options) {
+Plane sweep_plane_of_legs(Probe probe, std::int64_t i, const LatticeBox& box, const LatticeOptions& options) {
   Plane plane;
-  Probe probe(mechanism);
-  const std::array<bool, kFigureCount> defined = internal::defined_figures(mechanism, options.all_figures);
+  const std::array<bool, kFigureCount> defined =
+      internal::defined_figures(probe.mechanism(), options.all_figures);
   for (std::int64_t j = box[1].first; j <= box[1].last; ++j) {
     if (probe.dimension() == 3) probe.restart();
     for (std::int64_t k = box[2].first; k <= box[2].last; ++k) {
@@ -140,6 +141,8 @@ LatticeSweep sweep_workspace(const Mechanism& mechanism, const LatticeOptions& o
   std::optional<DeltaBatch> batch;
   if (mechanism.delta()) batch.emplace(*mechanism.delta(), mechanism.active_range(0), options.limits);
 
+  const Probe fresh(mechanism);
+
   // One plane is one piece of work; pieces are added up in order, so the result does not depend on threads.
   std::vector<Plane> planes(static_cast<std::size_t>(internal::size(box[0])));
   LatticeSweep sweep;
@@ -147,7 +150,7 @@ LatticeSweep sweep_workspace(const Mechanism& mechanism, const LatticeOptions& o
   sweep.complete = internal::for_each_index(planes.size(), effort, [&](std::size_t index) {
     const std::int64_t i = box[0].first + static_cast<std::int64_t>(index);
     planes[index] = batch ? sweep_plane_of_delta(*batch, i, box, h, options.all_figures)
-                          : sweep_plane_of_legs(mechanism, i, box, options);
+                          : sweep_plane_of_legs(fresh, i, box, options);
   });
 
   std::array<IndexRange, 3> bounds;
@@ -176,6 +179,56 @@ LatticeSweep sweep_workspace(const Mechanism& mechanism, const LatticeOptions& o
   return sweep;
 }
 
+double fitting_spacing(const Extents& extents, double least, double most_points) {
+  const auto points = [&](double h) {
+    const Vector3 size = extents.size();
+    return (size.x() / h + 1.0) * (size.y() / h + 1.0) * (size.z() / h + 1.0);
+  };
+  double spacing = least;
+  while (points(spacing) > most_points) {
+    const double power = std::pow(10.0, std::floor(std::log10(spacing) + 1e-9));
+    const double digit = spacing / power;
+    spacing = power * (digit < 1.999 ? 2.0 : digit < 4.999 ? 5.0 : 10.0);
+  }
+  return spacing;
+}
+
+double suitable_spacing(const Mechanism& mechanism, const Extents& extents) {
+  const bool plane = internal::tool_dimension(mechanism) == 2, fast = Probe(mechanism).fast();
+  const double points = mechanism.delta() ? 3e7 : plane ? (fast ? 2e5 : 2e4) : fast ? 3e6 : 1.2e5;
+  const double size = extents.size().maxCoeff();
+  if (!(size > 0.0)) return 1e-3;
+  return fitting_spacing(extents, std::pow(10.0, std::floor(std::log10(size)) - 5.0), points);
+}
+
+void refine_extremes(const Mechanism& mechanism, const LatticeOptions& options, LatticeSweep& sweep,
+                     const Effort& effort) {
+  assert(!workspace_obstacle(mechanism));
+  const Probe fresh(mechanism);
+  internal::for_each_index(kFigureCount, effort, [&](std::size_t f) {
+    Statistic& statistic = sweep.figures[f];
+    if (statistic.count == 0) return;
+    Probe probe = fresh;
+    const auto joints_at = [&probe](const Vector3& place) {
+      probe.restart();
+      return ActiveVector(probe.inverse(place).joints.head(probe.dimension()));
+    };
+    const auto answer_at = [&probe](const ActiveVector& joints) {
+      Vector3 all = Vector3::Zero();
+      all.head(joints.size()) = joints;
+      return probe.forward(all);
+    };
+    const auto figure = [&](const ActiveVector& joints) {
+      const Probe::Answer answer = answer_at(joints);
+      return answer.inside ? probe.figures(answer, options.limits)[f]
+                           : std::numeric_limits<double>::quiet_NaN();
+    };
+    const ActiveVector least = joints_at(statistic.min_at), largest = joints_at(statistic.max_at);
+    internal::refine(statistic, mechanism, least, largest, figure,
+                     [&](const ActiveVector& joints) { return answer_at(joints).position; });
+  });
+}
+
 WorkspaceMap map_workspace(const Mechanism& mechanism, const LatticeOptions& options, const Effort& effort) {
   assert(!workspace_obstacle(mechanism) && options.spacing > 0.0);
   const double h = options.spacing;
@@ -183,6 +236,7 @@ WorkspaceMap map_workspace(const Mechanism& mechanism, const LatticeOptions& opt
   std::optional<DeltaBatch> batch;
   if (mechanism.delta()) batch.emplace(*mechanism.delta(), mechanism.active_range(0), options.limits);
 
+  const Probe fresh(mechanism);
   std::vector<WorkspaceMap> planes(static_cast<std::size_t>(internal::size(box[0])));
   WorkspaceMap map;
   map.spacing = h;
@@ -195,7 +249,7 @@ WorkspaceMap map_workspace(const Mechanism& mechanism, const LatticeOptions& opt
     const std::int64_t i = box[0].first + static_cast<std::int64_t>(index);
     WorkspaceMap& plane = planes[index];
     if (!batch) {
-      Probe probe(mechanism);
+      Probe probe = fresh;
       for (std::int64_t j = box[1].first; j <= box[1].last; ++j) {
         if (probe.dimension() == 3) probe.restart();
         for (std::int64_t k = box[2].first; k <= box[2].last; ++k) {

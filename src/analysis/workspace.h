@@ -41,7 +41,11 @@ struct Statistic {
   double mean = 0.0;
   Vector3 min_at = Vector3::Zero();  ///< tool position of the minimum [m]
   Vector3 max_at = Vector3::Zero();  ///< [m]
+  bool unbounded = false;  ///< the figure grows without end towards a singular posture: `max` is what was found
+  std::optional<double> median, percentile_95;  ///< where asked for: half of them, and 95 of 100, stay below
 };
+
+struct Extents;
 
 // ------------------------------------------------------------------------------------------ lattice sweep
 
@@ -69,6 +73,20 @@ struct LatticeSweep {
 /// has more than 10^12 lattice points.
 LatticeSweep sweep_workspace(const Mechanism& mechanism, const LatticeOptions& options,
                              const Effort& effort = {});
+
+/// Moves the extremes of a sweep, with its options, from lattice points to where they really are, so that they
+/// do not depend on the lattice: see `Statistic::unbounded`; a least value of 0 is approached, not always
+/// reached. REQUIRES: a complete sweep of this mechanism.
+void refine_extremes(const Mechanism& mechanism, const LatticeOptions& options, LatticeSweep& sweep,
+                     const Effort& effort = {});
+
+/// A lattice spacing not below `least` with which a box around the workspace has at most `most_points` points:
+/// 1, 2 or 5 times a power of ten, or `least` [m].
+double fitting_spacing(const Extents& extents, double least, double most_points);
+/// The finest spacing of 1, 2 or 5 times a power of ten with which a sweep of this mechanism takes some
+/// seconds: a point costs nanoseconds with batch kernels, a microsecond in closed form, and tens of them by
+/// iteration.
+double suitable_spacing(const Mechanism& mechanism, const Extents& extents);
 
 /// The map itself: one row per lattice point inside.
 struct WorkspaceMap {
@@ -122,6 +140,10 @@ WorkspaceVolume workspace_volume(const Mechanism& mechanism, const Effort& effor
 /// The volume, or, where it is counted on a coarser lattice than that of a complete sweep, the sweep's count.
 /// What counting errs by is of first order in the spacing.
 WorkspaceVolume finer_count(WorkspaceVolume volume, const LatticeSweep& sweep);
+
+/// What the count of a complete sweep may be off by [m^3, m^2]: the volume's own error, and, where that does
+/// not come from counting, how far the two lie apart.
+double counting_error(const WorkspaceVolume& volume, const LatticeSweep& sweep);
 
 /// The largest sphere, or axis-aligned cube, that lies in the workspace; of a tool in a plane the largest
 /// circle, or axis-aligned square.

@@ -2,6 +2,7 @@
 #include <array>
 #include <map>
 #include <numbers>
+#include <tuple>
 
 #include "zwidth/actuation/arm_cylinder.h"
 #include "zwidth/analysis/arm_sheet.h"
@@ -53,6 +54,19 @@ const PoseWorkspace* pose_of(const BuiltDevice& device, const FigureOptions& opt
                 .first;
   }
   return found->second.reached && !found->second.unbounded ? &found->second : nullptr;
+}
+
+const AnyOrientation* anyhow_of(const BuiltDevice& device, const FigureOptions& options) {
+  const auto places = static_cast<std::int64_t>(options.get("any_places", 4000.0));
+  if (places < 1 || reach_of(device) != Reach::platform) return nullptr;
+  std::map<std::int64_t, std::optional<AnyOrientation>>& kept = cache_of(device).anyhow;
+  auto found = kept.find(places);
+  if (found == kept.end()) {
+    const PoseWorkspaceOptions search{
+        .shapes = false, .turning = false, .any_places = places, .slice_points = 0};
+    found = kept.emplace(places, pose_workspace(device.mechanism(), search, kOneThread).any).first;
+  }
+  return found->second ? &*found->second : nullptr;
 }
 
 const ReachMap* map_of(const BuiltDevice& device, const FigureOptions& options) {
@@ -462,6 +476,60 @@ FigureTable device_figures() {
          const PoseWorkspace* pose = reach_of(device) == Reach::platform ? pose_of(device, options) : nullptr;
          return pose != nullptr ? pose->turning.share.value_or(kUndefined) : kUndefined;
        }});
+  const std::vector<FigureOption> anyhow = {
+      {"any_places", 4000, Dimension::number, "about how many are looked at, a quarter of them in a plane"}};
+  const auto add_anyhow = [&](const std::string& name, const std::string& unit, const std::string& words,
+                              int axis, std::vector<FigureAnswer> answers, std::vector<FigureOption> options,
+                              auto of) {
+    add({.name = "any_orientation_" + name,
+         .unit = unit,
+         .meaning = words + " a platform that turns as its joints need",
+         .axis = axis,
+         .options = std::move(options),
+         .answers = std::move(answers),
+         .of_device = [of](const BuiltDevice& device, const FigureOptions& given) {
+           const AnyOrientation* found = anyhow_of(device, given);
+           return found != nullptr ? of(*found, given) : kUndefined;
+         }});
+  };
+  add_anyhow("volume", "m^n", "volume, or area in a plane, of the places of", -1,
+             {{"report workspace.any_orientation.volume"},
+              {"report workspace.any_orientation.area"},
+              {"report workspace.any_orientation.length"}},
+             anyhow, [](const AnyOrientation& found, const FigureOptions&) { return found.measure; });
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const bool upper : {false, true}) {
+      const std::string letter = kAxisNames[axis];
+      add_anyhow(letter + (upper ? "_max" : "_min"), "m",
+                 std::string(upper ? "upper" : "lower") + " end along " + letter + " of the places of", axis,
+                 {{"report workspace.any_orientation.ranges." + letter + (upper ? "[1]" : "[0]")}}, anyhow,
+                 [=](const AnyOrientation& found, const FigureOptions&) {
+                   const Interval range = found.range[static_cast<std::size_t>(axis)];
+                   return upper ? range.max : range.min;
+                 });
+    }
+  }
+  for (const auto& [name, words, of] : {std::tuple("mean", "mean", &AnyOrientation::Spread::mean),
+                                        std::tuple("least", "smallest", &AnyOrientation::Spread::least),
+                                        std::tuple("most", "largest", &AnyOrientation::Spread::most)}) {
+    add_anyhow(std::string("share_") + name, "1",
+               std::string(words) + " share of all orientations, over the places of", -1,
+               {{std::string("report workspace.any_orientation.share.") + name}}, anyhow,
+               [of = of](const AnyOrientation& found, const FigureOptions&) {
+                 return found.share ? (*found.share).*of : kUndefined;
+               });
+  }
+  std::vector<FigureOption> every_way = anyhow;
+  every_way.push_back({"level", 3, Dimension::number, "0 10 deg, 1 20 deg, 2 30 deg, 3 45 deg"});
+  add_anyhow("turned_volume", "m^n", "volume, or area in a plane, where it turns so far about every axis, of",
+             -1,
+             {{"report workspace.any_orientation.turned_every_way[level].volume"},
+              {"report workspace.any_orientation.turned_every_way[level].area"}},
+             every_way, [](const AnyOrientation& found, const FigureOptions& given) {
+               const int level = index_of(given, "level", 3.0);
+               if (level < 0 || level >= static_cast<int>(found.turned.size())) return kUndefined;
+               return found.turned[static_cast<std::size_t>(level)].measure;
+             });
   const std::vector<FigureOption> turned = {
       {"places", 50, Dimension::number, "about how many are looked at"},
       {"cubes", 50000, Dimension::number, "into how many the box around the arm is cut"}};
@@ -503,36 +571,6 @@ FigureTable device_figures() {
            return spread->volume[static_cast<std::size_t>(level)];
          }});
   }
-  const std::vector<FigureOption> conditioned = {
-      {"postures", 2000, Dimension::number, "how many, spread evenly over the joint ranges"}};
-  const auto sweep_of = [](const BuiltDevice& device, const FigureOptions& options) -> const PostureSweep* {
-    const auto samples = static_cast<std::int64_t>(options.get("postures", 2000.0));
-    const Mechanism& mechanism = device.mechanism();
-    if (samples < 1 || !mechanism.tool_turns() || mechanism.linear_rows() == 0) return nullptr;
-    std::map<std::int64_t, PostureSweep>& kept = cache_of(device).sweeps;
-    auto found = kept.find(samples);
-    if (found == kept.end())
-      found = kept.emplace(samples, sweep_postures(mechanism, {.samples = samples}, kOneThread)).first;
-    return &found->second;
-  };
-  add({.name = "homogeneous_conditioning_index",
-       .unit = "1",
-       .meaning = "mean over postures of the inverse condition number of all rows, one length for a radian",
-       .options = conditioned,
-       .answers = {{"report arm.conditioning.homogeneous.index"}},
-       .of_device = [sweep_of](const BuiltDevice& device, const FigureOptions& options) {
-         const PostureSweep* sweep = sweep_of(device, options);
-         return sweep != nullptr && sweep->homogeneous.weight() > 0.0 ? sweep->homogeneous.index() : kUndefined;
-       }});
-  add({.name = "conditioning_length",
-       .unit = "m",
-       .meaning = "that length: the one that makes this mean largest",
-       .options = conditioned,
-       .answers = {{"report arm.conditioning.characteristic_length"}},
-       .of_device = [sweep_of](const BuiltDevice& device, const FigureOptions& options) {
-         const PostureSweep* sweep = sweep_of(device, options);
-         return sweep != nullptr ? sweep->characteristic_length : kUndefined;
-       }});
 
   topic = "Mass and loads of the whole";
   add({.name = "moving_mass",

@@ -34,6 +34,11 @@ const Mechanism& BuiltDevice::mechanism() const {
   return *mechanism_;
 }
 
+const JacobianScale& BuiltDevice::scale() const {
+  if (!scale_) scale_ = jacobian_scale(mechanism());
+  return *scale_;
+}
+
 internal::DeviceCache& internal::cache_of(const BuiltDevice& device) {
   if (!device.cache_) device.cache_ = std::make_shared<DeviceCache>();
   return *device.cache_;

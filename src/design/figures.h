@@ -11,6 +11,7 @@
 #include "zwidth/actuation/drive.h"
 #include "zwidth/actuation/pneumatic_drive.h"
 #include "zwidth/analysis/acceleration.h"
+#include "zwidth/analysis/dexterity.h"
 #include "zwidth/analysis/force.h"
 #include "zwidth/description/description.h"
 #include "zwidth/description/units.h"
@@ -37,6 +38,8 @@ class BuiltDevice {
 
   const Description& description() const { return *description_; }
   const Mechanism& mechanism() const;
+  /// Behind its condition numbers; worked out when first asked for.
+  const JacobianScale& scale() const;
   const std::vector<std::optional<Drive>>& drives() const { return drives_; }
   const std::vector<std::optional<PneumaticDrive>>& pneumatic_drives() const { return pneumatic_drives_; }
 
@@ -45,6 +48,7 @@ class BuiltDevice {
 
   const Description* description_;
   mutable std::optional<Mechanism> mechanism_;  // built when first asked for: some figures need none
+  mutable std::optional<JacobianScale> scale_;
   std::vector<std::optional<Drive>> drives_;
   std::vector<std::optional<PneumaticDrive>> pneumatic_drives_;
   friend internal::DeviceCache& internal::cache_of(const BuiltDevice&);

@@ -213,6 +213,7 @@ FigureTable force_figures() {
        .options = {any_joint_option("the largest of all, without its sign")},
        .answers = {{"at gravity_torques[joint]"},
                    {"report inertia.gravity_torque", {{"joint", kAll}}},
+                   {"report mechanics.figures.gravity_torque", {{"joint", kAll}}},
                    {"report arm.gravity_torque", {{"joint", kAll}}}},
        .of = [](PostureFigures& at, const FigureOptions& options) {
          return worst_torque(gravity_torques(at.posture(), at.rates()), options);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "zwidth/analysis/dexterity.h"
 #include "zwidth/design/internal/figure_table.h"
@@ -11,29 +12,21 @@
 namespace zwidth::internal {
 namespace {
 
-// Rates of joints that turn and of joints that slide cannot be compared.
-bool joints_alike(PostureFigures& at) {
-  const unsigned sliding = jacobian_units(at.mechanism()).sliding_joints;
-  return sliding == 0 || sliding == (1U << at.mechanism().active_count()) - 1U;
+double condition_of(const Jacobian& rows) {
+  return finite_or_undefined(dexterity(rows).condition_number);
 }
 
-double of_dexterity(PostureFigures& at, double Dexterity::*figure) {
-  return joints_alike(at) ? finite_or_undefined(at.dexterity().*figure) : kUndefined;
+// Of a tool that also turns, its translations and rotations alone, joints that slide comparable with those that
+// turn.
+std::optional<Jacobian> translation(PostureFigures& at) {
+  const Mechanism& mechanism = at.mechanism();
+  if (mechanism.linear_rows() == 0) return std::nullopt;
+  return at.device().scale().homogeneous_rows(at.linear_rows());
 }
-double of_rotation(PostureFigures& at, double Dexterity::*figure) {
-  if (!at.mechanism().tool_turns() || !joints_alike(at)) return kUndefined;
-  return finite_or_undefined(dexterity(at.angular_rows()).*figure);
-}
-
-// The rows that `condition_number` is of.
-Jacobian moving_rows(PostureFigures& at) {
-  return at.mechanism().linear_rows() > 0 ? at.linear_rows() : at.angular_rows();
-}
-
-std::optional<CharacteristicLength> mixed(PostureFigures& at) {
-  const JacobianUnits units = jacobian_units(at.mechanism());
-  if (units.homogeneous(at.rates().tool)) return std::nullopt;
-  return characteristic_length(at.rates().tool, units);
+std::optional<Jacobian> rotation(PostureFigures& at) {
+  const Mechanism& mechanism = at.mechanism();
+  if (!mechanism.tool_turns()) return std::nullopt;
+  return at.device().scale().homogeneous_rows(at.angular_rows());
 }
 
 // How far the nearest leg is from stretched or folded, and the platform from being free; 0 at the singularity.
@@ -135,24 +128,23 @@ FigureTable tool_figures() {
        }});
   add({.name = "condition_number",
        .unit = "1",
-       .meaning =
-           "largest over smallest singular value of the Jacobian, of a tool that also turns of its linear rows",
+       .meaning = "largest over smallest singular value of the Jacobian, homogeneous by the device's "
+                  "characteristic length",
        .answers = {{"at condition_number"},
-                   {"at homogeneous.translation.condition_number"},
+                   {"at homogeneous.condition_number"},
                    {"report workspace.figures.condition_number"}},
        .of = [](PostureFigures& at, const FigureOptions&) {
-         return of_dexterity(at, &Dexterity::condition_number);
+         return finite_or_undefined(at.device().scale().condition_number(at.rates().tool));
        }});
   add({.name = "inverse_condition",
        .unit = "1",
        .meaning =
            "its inverse: 1 isotropic, 0 singular; the mean over the workspace is the global conditioning index",
        .answers = {{"report conditioning"},
-                   {"report arm.translation_conditioning"},
-                   {"report arm.conditioning.translation"},
-                   {"report workspace.conditioning.translation"}},
+                   {"report arm.conditioning.homogeneous"},
+                   {"report workspace.conditioning.homogeneous"}},
        .of = [](PostureFigures& at, const FigureOptions&) {
-         return joints_alike(at) ? 1.0 / at.dexterity().condition_number : kUndefined;
+         return 1.0 / at.device().scale().condition_number(at.rates().tool);
        }});
   add({.name = "well_conditioned",
        .unit = "1",
@@ -161,64 +153,61 @@ FigureTable tool_figures() {
        .options = {{"limit", 5.0, Dimension::number, "of the condition number"}},
        .answers = {{"report conditioning.shares"}},
        .of = [](PostureFigures& at, const FigureOptions& options) {
-         if (!joints_alike(at)) return kUndefined;
-         return at.dexterity().condition_number < options.get("limit", 5.0) ? 1.0 : 0.0;
-       }});
-  add({.name = "rotation_condition_number",
-       .unit = "1",
-       .meaning = "condition number of the Jacobian's angular rows",
-       .answers = {{"at homogeneous.rotation.condition_number"}},
-       .of = [](PostureFigures& at, const FigureOptions&) {
-         return of_rotation(at, &Dexterity::condition_number);
-       }});
-  add({.name = "rotation_inverse_condition",
-       .unit = "1",
-       .meaning = "its inverse",
-       .answers = {{"report arm.rotation_conditioning"},
-                   {"report arm.conditioning.rotation"},
-                   {"report workspace.conditioning.rotation"}},
-       .of = [](PostureFigures& at, const FigureOptions&) {
-         return 1.0 / of_rotation(at, &Dexterity::condition_number);
-       }});
-  add({.name = "homogeneous_condition_number",
-       .unit = "1",
-       .meaning = "condition number of all rows, a radian counted as the length that makes it smallest",
-       .answers = {{"at homogeneous.condition_number"}},
-       .of = [](PostureFigures& at, const FigureOptions&) {
-         const auto found = mixed(at);
-         return found ? finite_or_undefined(found->condition_number) : kUndefined;
-       }});
-  add({.name = "homogeneous_isotropy",
-       .unit = "1",
-       .meaning = "isotropy of all rows, a radian counted as that length",
-       .answers = {{"at homogeneous.isotropy"}},
-       .of = [](PostureFigures& at, const FigureOptions&) {
-         const auto found = mixed(at);
-         if (!found) return kUndefined;
-         return isotropy(homogeneous(at.rates().tool, jacobian_units(at.mechanism()), found->length));
-       }});
-  add({.name = "characteristic_length",
-       .unit = "m",
-       .meaning = "that length",
-       .answers = {{"at homogeneous.length"}},
-       .of = [](PostureFigures& at, const FigureOptions&) {
-         const auto found = mixed(at);
-         return found ? found->length : kUndefined;
+         return at.device().scale().condition_number(at.rates().tool) < options.get("limit", 5.0) ? 1.0 : 0.0;
        }});
   add({.name = "isotropy",
        .unit = "1",
        .meaning = "geometric over arithmetic mean of the squared singular values: 1 isotropic, 0 singular",
-       .answers = {{"at isotropy"}, {"at homogeneous.translation.isotropy"}},
+       .answers = {{"at isotropy"}, {"at homogeneous.isotropy"}},
        .of = [](PostureFigures& at, const FigureOptions&) {
-         return joints_alike(at) ? isotropy(moving_rows(at)) : kUndefined;
+         return isotropy(at.device().scale().motions(at.rates().tool));
        }});
-  add({.name = "rotation_isotropy",
-       .unit = "1",
-       .meaning = "the same of the angular rows",
-       .answers = {{"at homogeneous.rotation.isotropy"}},
+  add({.name = "characteristic_length",
+       .unit = "m",
+       .meaning = "the device's length that a radian counts as, of a tool or of joints that turn and slide",
+       .answers = {{"at homogeneous.length"},
+                   {"report arm.conditioning.characteristic_length"},
+                   {"report workspace.conditioning.characteristic_length"}},
        .of = [](PostureFigures& at, const FigureOptions&) {
-         return at.mechanism().tool_turns() && joints_alike(at) ? isotropy(at.angular_rows()) : kUndefined;
+         const JacobianScale& scale = at.device().scale();
+         return scale.mixed ? scale.length : kUndefined;
        }});
+  struct OfOneKind {
+    const char* prefix;
+    const char* of;
+    std::optional<Jacobian> (*rows)(PostureFigures&);
+  };
+  for (const OfOneKind& kind :
+       {OfOneKind{"translation", "translations", translation}, OfOneKind{"rotation", "rotations", rotation}}) {
+    const std::string name = kind.prefix;
+    const auto rows = kind.rows;
+    add({.name = name + "_condition_number",
+         .unit = "1",
+         .meaning = fmt::format("condition number of the {} alone", kind.of),
+         .answers = {{"at homogeneous." + name + ".condition_number"}},
+         .of = [rows](PostureFigures& at, const FigureOptions&) {
+           const std::optional<Jacobian> J = rows(at);
+           return J ? condition_of(*J) : kUndefined;
+         }});
+    add({.name = name + "_inverse_condition",
+         .unit = "1",
+         .meaning = "its inverse",
+         .answers = {{"report arm." + name + "_conditioning"},
+                     {"report arm.conditioning." + name},
+                     {"report workspace.conditioning." + name}},
+         .of = [rows](PostureFigures& at, const FigureOptions&) {
+           const std::optional<Jacobian> J = rows(at);
+           return J ? 1.0 / dexterity(*J).condition_number : kUndefined;
+         }});
+    add({.name = name + "_isotropy",
+         .unit = "1",
+         .meaning = fmt::format("isotropy of the {} alone", kind.of),
+         .answers = {{"at homogeneous." + name + ".isotropy"}},
+         .of = [rows](PostureFigures& at, const FigureOptions&) {
+           const std::optional<Jacobian> J = rows(at);
+           return J ? isotropy(*J) : kUndefined;
+         }});
+  }
   add({.name = "manipulability",
        .unit = "SI",
        .meaning = "product of the singular values of the Jacobian",
@@ -240,13 +229,13 @@ FigureTable tool_figures() {
        .unit = "SI",
        .meaning = "smallest singular value of the angular rows",
        .of = [](PostureFigures& at, const FigureOptions&) {
-         return of_rotation(at, &Dexterity::min_singular_value);
+         return at.mechanism().tool_turns() ? dexterity(at.angular_rows()).min_singular_value : kUndefined;
        }});
   add({.name = "rotation_max_singular_value",
        .unit = "SI",
        .meaning = "largest singular value of the angular rows",
        .of = [](PostureFigures& at, const FigureOptions&) {
-         return of_rotation(at, &Dexterity::max_singular_value);
+         return at.mechanism().tool_turns() ? dexterity(at.angular_rows()).max_singular_value : kUndefined;
        }});
   add({.name = "closure",
        .unit = "1",

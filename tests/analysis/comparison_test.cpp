@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
+#include "support/platforms.h"
 #include "support/small_arms.h"
 
 #include "zwidth/analysis/reach.h"
@@ -62,6 +63,46 @@ TEST(Comparison, OfAnArmByItsInverseAndByItsReach) {
   EXPECT_LT(found.only_first.value, 2e-3 * found.first.value);
   EXPECT_LT(found.only_second.value, 2e-3 * found.second.value);
   EXPECT_NEAR(found.second.value, workspace_volume(point).value, 5.0 * found.second.error);
+}
+
+// Platforms that turn, in any orientation and in one, against inverses that know nothing of the general solver.
+TEST(Comparison, OfPlatformsThatTurn) {
+  const test::Hexapod design = test::hexapod(), longer = test::hexapod(0.15, 0.06, 0.2, 0.05);
+  const Mechanism small(design.description()), large(longer.description());
+  ASSERT_FALSE(comparison_obstacle(small));
+  EXPECT_EQ(comparison_axes(small), (std::vector<int>{0, 1, 2}));
+  const ComparisonOptions upright{.spacing = 0.01, .orientation = Matrix3::Identity()};
+  const WorkspaceComparison found = compare_workspaces(small, large, upright);
+  std::int64_t first = 0, second = 0;
+  for (int i = -30; i < 30; ++i) {
+    for (int j = -30; j < 30; ++j) {
+      for (int k = 5; k < 35; ++k) {
+        const Pose pose{.position = 0.01 * (Vector3(i, j, k) + Vector3::Constant(0.5))};
+        first += design.reaches(pose) ? 1 : 0;
+        second += longer.reaches(pose) ? 1 : 0;
+      }
+    }
+  }
+  // A cell at the boundary may have no neighbour to be led to from.
+  EXPECT_LE(found.first.value * 1e6, static_cast<double>(first) + 1e-6);
+  EXPECT_NEAR(found.first.value * 1e6, static_cast<double>(first), 0.01 * static_cast<double>(first));
+  EXPECT_LE(found.second.value * 1e6, static_cast<double>(second) + 1e-6);
+  EXPECT_NEAR(found.second.value * 1e6, static_cast<double>(second), 0.01 * static_cast<double>(second));
+  EXPECT_EQ(found.only_first.value, 0.0);  // the longer strokes hold the shorter ones
+  // In any orientation it reaches more, and all that it reaches upright.
+  const WorkspaceComparison any = compare_workspaces(small, small, {.spacing = 0.01});
+  EXPECT_GT(any.first.value, 1.5 * found.first.value);
+  EXPECT_EQ(any.only_first.value, 0.0);
+}
+
+TEST(Comparison, OfAPlateAndAFiveBar) {
+  const Mechanism plate(test::ThreeRrr{}.description()), plane = five_bar(0.10, 0.16, 0.06);
+  EXPECT_EQ(comparison_axes(plate), comparison_axes(plane));
+  const WorkspaceComparison found = compare_workspaces(plate, plane, {.spacing = 2e-3});
+  EXPECT_EQ(found.dimension, 2);
+  EXPECT_NEAR(found.both.value + found.only_first.value, found.first.value, 1e-12);
+  EXPECT_GT(found.both.value, 0.0);
+  EXPECT_NEAR(found.second.value, workspace_volume(plane).value, 5.0 * found.second.error + 1e-4);
 }
 
 TEST(Comparison, OfTheSevenJointArmIsThatOfTheSource) {

@@ -49,8 +49,7 @@ DriveDescription direct_drive() {
 DataSheetOptions coarse() {
   DataSheetOptions options;
   options.spacing = 5e-3;
-  options.inertia_spacing = 20e-3;
-  options.general_spacing = 24e-3;
+  options.most_mechanical_points = 2e3;
   options.slice_points = 31;
   options.surface_divisions = 6;
   return options;
@@ -87,8 +86,9 @@ TEST(DataSheet, TellsEverythingAboutADrivenDelta) {
   EXPECT_NEAR(sheet.joint_resolution[0], 2.0 * M_PI / 4000.0, 1e-15);
   EXPECT_NEAR(sheet.torque_resolution[0], 25.5e-6, 1e-15);
 
-  ASSERT_TRUE(sheet.inertia);
-  EXPECT_GT(sheet.inertia->lightest.min, 0.06);
+  ASSERT_TRUE(sheet.mechanics);
+  EXPECT_GT(sheet.mechanics->sweep[MechanicalFigure::lightest].min, 0.06);
+  EXPECT_GT(sheet.mechanics->sweep[MechanicalFigure::gravity_torque].min, 0.0);
   ASSERT_TRUE(sheet.middle);
   ASSERT_TRUE(sheet.middle->continuous_forces);
   EXPECT_EQ(sheet.middle->continuous_forces->vertices.size(), 8u);
@@ -124,7 +124,7 @@ TEST(DataSheet, WithoutDrivesOrBodiesLeavesOutWhatTheyDecideAndSaysSo) {
   const DataSheet sheet = data_sheet(description, coarse());
   EXPECT_TRUE(sheet.workspace);
   EXPECT_FALSE(sheet.continuous);
-  EXPECT_FALSE(sheet.inertia);
+  EXPECT_FALSE(sheet.mechanics);
   EXPECT_FALSE(sheet.warnings.empty());
 }
 
@@ -132,13 +132,14 @@ TEST(DataSheet, OfLegsAgreesWithClosedForm) {
   Description description = test::with_bodies(test::published_delta());
   description.drives = {direct_drive()};
   DataSheetOptions options = coarse();
-  options.spacing = options.inertia_spacing = 24e-3;
+  options.spacing = 24e-3;
   const DataSheet a = data_sheet(description, options), b = data_sheet(spelled_out(description), options);
   ASSERT_TRUE(b.workspace);
   EXPECT_EQ(b.mechanism_type, "legs");
   EXPECT_EQ(a.workspace->sweep.inside, b.workspace->sweep.inside);
   EXPECT_NEAR(a.continuous->weakest.mean / b.continuous->weakest.mean, 1.0, 1e-9);
-  EXPECT_NEAR(a.inertia->heaviest.mean / b.inertia->heaviest.mean, 1.0, 1e-9);
+  const MechanicalFigure heaviest = MechanicalFigure::heaviest;
+  EXPECT_NEAR(*a.mechanics->sweep[heaviest].median / *b.mechanics->sweep[heaviest].median, 1.0, 1e-9);
   EXPECT_NEAR(a.middle->condition_number / b.middle->condition_number, 1.0, 1e-9);
 }
 
@@ -172,10 +173,11 @@ TEST(DataSheet, LatticeOfALargeDeviceIsCoarserByRoundSteps) {
     *length *= 20.0;
   DataSheetOptions options;
   options.slice_points = options.surface_divisions = options.frequency_points = 0;
-  options.most_points = options.most_costly_points = 2e4;
+  options.most_mechanical_points = 2e4;
   const DataSheet sheet = data_sheet(large, options);
   ASSERT_TRUE(sheet.workspace.has_value());
-  EXPECT_DOUBLE_EQ(sheet.workspace->sweep.spacing, 0.2);  // in a box of 5.2 x 5.3 x 3.4 m
+  EXPECT_DOUBLE_EQ(sheet.workspace->sweep.spacing, 0.02);  // in a box of 5.2 x 5.3 x 3.4 m
+  EXPECT_DOUBLE_EQ(sheet.mechanics->sweep.spacing, 0.2);
   EXPECT_GT(sheet.workspace->sweep.inside, 1000);
 }
 

@@ -1,10 +1,18 @@
 #include "zwidth/analysis/dexterity.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "support/small_arms.h"
+
+#include "zwidth/analysis/workspace.h"
+#include "zwidth/description/catalogue.h"
+#include "zwidth/description/read.h"
+#include "zwidth/mechanism/families.h"
 
 namespace zwidth {
 namespace {
@@ -68,6 +76,52 @@ TEST(CharacteristicLength, OfManyPosturesMakesTheMeanLargest) {
     for (const Jacobian& J : postures) mean += 1.0 / condition_at(J, {}, std::pow(10.0, power)) / 20.0;
     EXPECT_LE(mean, best.conditioning + 1e-9);
   }
+}
+
+// One definition for maps, data sheets and single postures, over every device that a lattice covers.
+TEST(JacobianScale, OfAMapIsThatOfEveryPosture) {
+  int mixed = 0;
+  const auto agrees = [&](const Description& description) {
+    const Mechanism whole(description), mechanism(without_free_joints(description));
+    if (workspace_obstacle(mechanism)) return;
+    const JacobianScale scale = jacobian_scale(whole);
+    mixed += scale.mixed ? 1 : 0;
+    const double size = workspace_extents(mechanism).size().maxCoeff();
+    const WorkspaceMap map = map_workspace(mechanism, {.spacing = size / 9.3});
+    ASSERT_FALSE(map.positions.empty()) << mechanism.name();
+    for (std::size_t p = 0; p < map.positions.size(); p += 1 + map.positions.size() / 40) {
+      const double K = figure(map.figures[p], Figure::condition_number);
+      // The map has one of the postures that an arm reaches the place by.
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Solution& solution : solve_inverse_all(mechanism, {.position = map.positions[p]})) {
+        if (!solution) continue;
+        const double other = scale.condition_number(jacobian(*solution.posture));
+        nearest = std::min(nearest, std::abs(other / K - 1.0));
+      }
+      EXPECT_LT(nearest, 1e-7) << mechanism.name() << " " << map.positions[p].transpose();
+    }
+  };
+  const Catalogue catalogue = Catalogue::load();
+  for (const BuiltinFile& device : catalogue.devices()) agrees(read_description(device.name, {}, catalogue));
+  Description arm = test::cylindrical_arm(0.22, 0.18);
+  std::get<SerialDescription>(arm.mechanism).platform = PlatformFreedom::point;
+  agrees(arm);
+  EXPECT_GE(mixed, 2);
+}
+
+TEST(JacobianScale, GrowsWithTheDevice) {
+  Description small = test::cylindrical_arm(0.22, 0.18), large = test::cylindrical_arm(0.44, 0.36);
+  for (Description* arm : {&small, &large}) {
+    auto& serial = std::get<SerialDescription>(arm->mechanism);
+    serial.platform = PlatformFreedom::point;
+    if (arm == &small) continue;
+    for (auto& joint : serial.joints) {
+      if (joint.type == SerialJointType::prismatic) joint.range = {2.0 * joint.range.min, 2.0 * joint.range.max};
+    }
+  }
+  const JacobianScale one = jacobian_scale(Mechanism(small)), two = jacobian_scale(Mechanism(large));
+  ASSERT_TRUE(one.mixed);
+  EXPECT_NEAR(two.length / one.length, 2.0, 1e-6);
 }
 
 TEST(Homogeneous, MultipliesAngularRows) {

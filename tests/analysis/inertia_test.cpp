@@ -36,28 +36,5 @@ TEST(ApparentMass, IsTheForcePerAccelerationOfAPushedTool) {
   }
 }
 
-TEST(InertiaSweep, CountsTheWorkspaceAndBracketsEveryPosture) {
-  const Mechanism mechanism(test::with_bodies(test::published_delta()));
-  const InertiaSweep sweep = sweep_inertia(mechanism, 15e-3);
-  EXPECT_EQ(sweep.inside, sweep_workspace(mechanism, {.spacing = 15e-3}).inside);
-  EXPECT_TRUE(sweep.complete);
-  for (int axis = 0; axis < 3; ++axis) {
-    EXPECT_EQ(sweep.along_axes[axis].count, sweep.inside);
-    EXPECT_GE(sweep.along_axes[axis].min, sweep.lightest.min);
-    EXPECT_LE(sweep.along_axes[axis].max, sweep.heaviest.max);
-  }
-  // All of the platform moves with the tool, so nothing feels lighter than it.
-  EXPECT_GT(sweep.lightest.min, 0.06);
-  EXPECT_GT(sweep.gravity_torque.min, 0.0);
-}
-
-TEST(InertiaSweep, IsTheSameForAnyNumberOfThreads) {
-  const Mechanism mechanism(test::with_bodies(test::published_delta()));
-  const InertiaSweep one = sweep_inertia(mechanism, 20e-3, {.threads = 1});
-  const InertiaSweep four = sweep_inertia(mechanism, 20e-3, {.threads = 4});
-  EXPECT_EQ(one.heaviest.mean, four.heaviest.mean);
-  EXPECT_EQ(one.lightest.min_at, four.lightest.min_at);
-}
-
 }  // namespace
 }  // namespace zwidth

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <sstream>
+#include <vector>
 
 #include "support/r_cubes.h"
 
@@ -59,19 +60,62 @@ TEST(Mechanical, StiffnessIsThatOfTheComplianceUnderPureForces) {
   EXPECT_GT(most, 0.98 * stiffest);
 }
 
-TEST(Mechanical, ASweepOfMassesIsThatOfInertia) {
+TEST(Mechanical, ASweepCountsTheWorkspaceAndBracketsEveryPosture) {
   for (const char* name : {"delta", "five-bar"}) {
     const Device device(name);
     const double spacing = 0.02;
     const MechanicalSweep sweep = sweep_mechanics(device.mechanism, device.drives, spacing);
-    const InertiaSweep inertia = sweep_inertia(device.mechanism, spacing);
-    EXPECT_EQ(sweep.inside, inertia.inside);
-    const Statistic& heaviest = sweep[MechanicalFigure::heaviest];
-    EXPECT_NEAR(heaviest.max, inertia.heaviest.max, 1e-9 * heaviest.max);
-    // The devices are symmetric, and so are the places.
-    EXPECT_EQ(heaviest.max_at.cwiseAbs(), inertia.heaviest.max_at.cwiseAbs());
-    EXPECT_NEAR(sweep[MechanicalFigure::lightest].mean, inertia.lightest.mean, 1e-9);
-    EXPECT_NEAR(sweep[MechanicalFigure::mass_x].min, inertia.along_axes[0].min, 1e-9);
+    EXPECT_EQ(sweep.inside, sweep_workspace(device.mechanism, {.spacing = spacing}).inside);
+    const WorkspaceMap map = map_workspace(device.mechanism, {.spacing = spacing});
+    std::vector<double> heaviest, gravity;
+    for (const Vector3& place : map.positions) {
+      const Posture posture = *solve_inverse(device.mechanism, {.position = place}).posture;
+      const Rates rate = rates(posture);
+      const Jacobian J = rate.tool.topRows(device.mechanism.linear_rows());
+      const ApparentMass mass = apparent_mass(cartesian_mass(J, mass_matrix(posture, rate)));
+      heaviest.push_back(mass.heaviest);
+      gravity.push_back(gravity_torques(posture, rate).cwiseAbs().maxCoeff());
+      EXPECT_GE(mass.lightest, sweep[MechanicalFigure::lightest].min * (1.0 - 1e-9));
+      EXPECT_GE(mass.along_axes[0], sweep[MechanicalFigure::mass_x].min * (1.0 - 1e-9));
+    }
+    std::ranges::sort(heaviest);
+    const Statistic& found = sweep[MechanicalFigure::heaviest];
+    EXPECT_NEAR(*found.median / heaviest[heaviest.size() / 2], 1.0, 0.05) << name;
+    const double most = static_cast<double>(std::ranges::count_if(
+        heaviest, [&](double mass) { return mass <= *found.percentile_95 * (1.0 + 1e-9); }));
+    EXPECT_NEAR(most / static_cast<double>(heaviest.size()), 0.95, 1.0 / static_cast<double>(heaviest.size()));
+    EXPECT_GE(found.max, heaviest.back() * (1.0 - 1e-9));
+    EXPECT_GE(sweep[MechanicalFigure::gravity_torque].max, *std::ranges::max_element(gravity) * (1.0 - 1e-9));
+  }
+}
+
+// Extremes belong to the workspace, not to a lattice.
+TEST(Mechanical, ExtremesDoNotDependOnTheLattice) {
+  // The five-bar is heaviest in a corner of its joint ranges, nearly stretched out; the first pneumatic arm has
+  // none between it and its stretched elbow.
+  const Device five_bar("five-bar"), arm("pneumatic-1");
+  std::vector<double> heaviest;
+  for (const double spacing : {0.007, 0.011, 0.02}) {
+    const MechanicalSweep sweep = sweep_mechanics(five_bar.mechanism, five_bar.drives, spacing);
+    EXPECT_FALSE(sweep[MechanicalFigure::heaviest].unbounded) << spacing;
+    heaviest.push_back(sweep[MechanicalFigure::heaviest].max);
+  }
+  EXPECT_NEAR(heaviest[1] / heaviest[0], 1.0, 1e-3);
+  EXPECT_NEAR(heaviest[2] / heaviest[0], 1.0, 1e-3);
+  for (const double spacing : {0.03, 0.05}) {
+    const MechanicalSweep sweep = sweep_mechanics(arm.mechanism, arm.drives, spacing);
+    EXPECT_TRUE(sweep[MechanicalFigure::heaviest].unbounded) << spacing;
+    EXPECT_FALSE(sweep[MechanicalFigure::lightest].unbounded) << spacing;
+  }
+  const Device delta("delta");
+  const MechanicalSweep fine = sweep_mechanics(delta.mechanism, delta.drives, 0.015),
+                        coarse = sweep_mechanics(delta.mechanism, delta.drives, 0.023);
+  for (const MechanicalFigure which :
+       {MechanicalFigure::heaviest, MechanicalFigure::lightest, MechanicalFigure::mass_z}) {
+    EXPECT_EQ(fine[which].unbounded, coarse[which].unbounded);
+    EXPECT_NEAR(fine[which].min / coarse[which].min, 1.0, 1e-4);
+    if (fine[which].unbounded) continue;
+    EXPECT_NEAR(fine[which].max / coarse[which].max, 1.0, 1e-4);
   }
 }
 
@@ -226,15 +270,15 @@ TEST(Mechanical, AMapHasAColumnForWhatIsKnown) {
   const std::size_t before = map.columns().size();
   add_mechanics(device.mechanism, device.drives, map);
   // Masses along two axes and in two directions, and acceleration; no stiffness.
-  EXPECT_EQ(map.columns().size(), before + 5);
+  EXPECT_EQ(map.columns().size(), before + 6);
   EXPECT_EQ(map.columns()[before], "mass_x");
-  EXPECT_EQ(map.more.size(), 5 * map.positions.size());
+  EXPECT_EQ(map.more.size(), 6 * map.positions.size());
   std::ostringstream csv;
   write_csv(map, csv);
   const std::string text = csv.str();
   const std::string first =
       text.substr(text.find('\n') + 1, text.find('\n', text.find('\n') + 1) - text.find('\n') - 1);
-  EXPECT_EQ(static_cast<std::size_t>(std::count(first.begin(), first.end(), ',')) + 1, before + 5);
+  EXPECT_EQ(static_cast<std::size_t>(std::count(first.begin(), first.end(), ',')) + 1, before + 6);
 }
 
 }  // namespace

@@ -245,6 +245,79 @@ TEST(PoseWorkspace, CutsThroughHomeFollowTheBoundary) {
   }
 }
 
+// The union over angles of where the circles meet, counted without the general solver.
+TEST(PoseWorkspace, InAnyOrientationIsTheUnionOverOrientations) {
+  const ThreeRrr design;
+  const Mechanism mechanism(design.description());
+  const PoseWorkspace workspace = pose_workspace(
+      mechanism, {.spacing = 0.004, .shapes = false, .turning = false, .any_places = 8'000, .slice_points = 0});
+  ASSERT_TRUE(workspace.any);
+  const AnyOrientation& any = *workspace.any;
+  std::int64_t count = 0;
+  double shares = 0.0;
+  const double h = any.spacing;
+  const auto span = static_cast<int>(0.3 / h);
+  constexpr int kAngles = 720;
+  for (int i = -span; i <= span; ++i) {
+    for (int j = -span; j <= span; ++j) {
+      int angles = 0;
+      for (int a = 0; a < kAngles; ++a) {
+        const double yaw = pi * (2.0 * a / kAngles - 1.0);
+        angles += design.reaches({{i * h, j * h, 0.0}, turned(Vector3::UnitZ(), yaw)}) ? 1 : 0;
+      }
+      count += angles > 0 ? 1 : 0;
+      shares += angles / static_cast<double>(kAngles);
+    }
+  }
+  // What the plate can be led to is at the most what its legs allow; here little is cut off by singular
+  // postures.
+  EXPECT_LE(static_cast<double>(any.inside), 1.02 * static_cast<double>(count));  // slivers between the angles
+  EXPECT_GT(static_cast<double>(any.inside), 0.9 * static_cast<double>(count));
+  EXPECT_GT(any.measure, workspace.measure);
+  ASSERT_TRUE(any.share);
+  EXPECT_GT(any.places, 20);
+  EXPECT_LE(any.share->mean, 1.1 * shares / static_cast<double>(count));
+  // Turned ever farther every way, ever fewer places are left.
+  for (std::size_t k = 1; k < any.turned.size(); ++k)
+    EXPECT_LE(any.turned[k].measure, any.turned[k - 1].measure);
+}
+
+TEST(PoseWorkspace, EveryPlaceInAnyOrientationIsOneOfTheHexapods) {
+  const Hexapod design = hexapod();
+  const Mechanism mechanism(design.description());
+  const PoseWorkspace workspace = pose_workspace(
+      mechanism, {.spacing = 0.02, .shapes = false, .turning = false, .any_places = 600, .slice_points = 0});
+  ASSERT_TRUE(workspace.any && workspace.any->share);
+  EXPECT_GT(workspace.any->measure, 1.5 * workspace.measure);
+  // No strut is longer than its stroke allows, whatever the orientation: the plate's middle stays within the
+  // reach of a strut and the plate's radius.
+  EXPECT_LT(workspace.any->range[2].max, design.height + design.stroke + 0.06);
+  EXPECT_LE(workspace.any->share->most, 1.0);
+  EXPECT_GE(workspace.any->share->least, 0.0);
+  EXPECT_GT(workspace.any->turned[0].measure, 0.0);
+}
+
+TEST(PoseWorkspace, ForcesAreThoseOfTheJacobianThere) {
+  const Mechanism mechanism(ThreeRrr{}.description());
+  const ActiveVector limit = Vector3(0.2, 0.3, 0.4);
+  const PoseWorkspace workspace =
+      pose_workspace(mechanism, {.spacing = 0.008,
+                                 .shapes = false,
+                                 .turning = false,
+                                 .torque = [&](const Posture&) { return TorqueRange::symmetric(limit); },
+                                 .slice_points = 0});
+  ASSERT_GT(workspace.force[0].count, 0);
+  EXPECT_EQ(workspace.force[2].count, 0);
+  EXPECT_EQ(workspace.moment[0].count, 0);
+  const auto at = [&](const Vector3& place) {
+    return jacobian(*solve_inverse(mechanism, {.position = place}).posture);
+  };
+  EXPECT_NEAR(axis_force_limits(Jacobian(at(workspace.force[1].min_at).topRows(2)), limit)[1],
+              workspace.force[1].min, 1e-9);
+  EXPECT_NEAR(axis_force_limits(Jacobian(at(workspace.moment[2].max_at).bottomRows(1)), limit)[0],
+              workspace.moment[2].max, 1e-9);
+}
+
 TEST(PoseWorkspace, DoesNotDependOnThreads) {
   const Mechanism plane(ThreeRrr{}.description()), space(hexapod().description());
   for (const auto& [mechanism, options] :

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
+#include "zwidth/analysis/dexterity.h"
 #include "zwidth/mechanism/jacobian.h"
 
 namespace zwidth {
@@ -82,6 +83,7 @@ TEST(ReachShapes, ACutHasTheAreaOfTheRegionAndItsBestConditioning) {
   EXPECT_NEAR(slices[2].slice.area, area, 0.02 * area);
   // 1/K of the linear rows at one point, from the two links' Jacobian and the slide's unit column.
   const PlaneGrid& grid = slices[2].conditioning;
+  const JacobianScale scale = jacobian_scale(mechanism);
   int compared = 0;
   for (int iv = 0; iv < grid.nv; iv += 7) {
     for (int iu = 0; iu < grid.nu; iu += 7) {
@@ -91,7 +93,8 @@ TEST(ReachShapes, ACutHasTheAreaOfTheRegionAndItsBestConditioning) {
       const double c = ((x * x + y * y) - 0.13) / 0.12, elbow = std::acos(std::clamp(c, -1.0, 1.0));
       const double shoulder = std::atan2(y, x) - std::atan2(0.2 * std::sin(elbow), 0.3 + 0.2 * std::cos(elbow));
       const Solution solution = solve_forward(mechanism, Vector3(0.1, shoulder, elbow));
-      const double expected = 1.0 / dexterity(jacobian(*solution.posture).topRows(3)).condition_number;
+      const Jacobian rows = jacobian(*solution.posture).topRows(3);
+      const double expected = 1.0 / dexterity(scale.homogeneous_rows(rows)).condition_number;
       EXPECT_NEAR(grid.at(iu, iv), expected, 0.02);  // over a cube and its neighbours in height
       ++compared;
     }

@@ -10,6 +10,7 @@
 
 #include "support/deltas.h"
 
+#include "zwidth/analysis/dexterity.h"
 #include "zwidth/mechanism/families.h"
 #include "zwidth/mechanism/figure.h"
 #include "zwidth/mechanism/jacobian.h"
@@ -266,6 +267,7 @@ TEST(Workspace, OfPositioningArmsIsWhereSomePostureIsWithinTheRanges) {
     description.name = "arm";
     description.mechanism = positioning_arm(slides);
     const Mechanism mechanism(description);
+    const JacobianScale scale = jacobian_scale(mechanism);
     constexpr double h = 0.013;
     const LatticeSweep sweep = sweep_workspace(mechanism, {.spacing = h});
     std::int64_t inside = 0;
@@ -278,7 +280,7 @@ TEST(Workspace, OfPositioningArmsIsWhereSomePostureIsWithinTheRanges) {
           for (const Solution& solution : solve_inverse_all(mechanism, goal)) {
             if (solution.status == SolveStatus::joint_limit) continue;
             best = 1.0;
-            least = std::min(least, dexterity(jacobian(*solution.posture)).condition_number);
+            least = std::min(least, scale.condition_number(jacobian(*solution.posture)));
           }
           if (best > 0.0) ++inside;
         }

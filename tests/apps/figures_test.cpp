@@ -288,7 +288,12 @@ TEST(Figures, OfDevicesAreWhatReportSays) {
                                       "report workspace.turning.about.x[0]",
                                       "report workspace.turning.about.x[1]",  // of a plane
                                       "report workspace.turning.about.y[0]",
-                                      "report workspace.turning.about.y[1]"};
+                                      "report workspace.turning.about.y[1]",
+                                      "report workspace.any_orientation.length",
+                                      "report workspace.any_orientation.volume",
+                                      "report workspace.any_orientation.ranges.z[0]",
+                                      "report workspace.any_orientation.ranges.z[1]",
+                                      "report workspace.any_orientation.turned_every_way[level].volume"};
   for (const std::string& place : wanted) {
     const bool slow = place.find("arm.orientations") != std::string::npos;
     EXPECT_TRUE(slow || rare.contains(place) || compared.contains(place)) << place << " stands in no report";
@@ -375,11 +380,12 @@ TEST(Figures, AreAllThatReportAnswers) {
       {R"((middle|arm\.home)\..*)", "figures at = \"middle\" and at = \"home\""},
       {R"(arm\.(farthest)\.(joints|position).*)", "where that is"},
       {R"(arm\.conditioning\.(best_joints|worst_joints).*)", "where that is"},
-      {R"((arm|workspace)\.conditioning\.homogeneous\..*)", "of one length; homogeneous_conditioning_index"},
-      {R"(workspace\.conditioning\.characteristic_length)", "conditioning_length"},
       {R"(conditioning\..*)", "inverse_condition and well_conditioned over the workspace"},
       {R"(drives\[\]\.current_loop\..*)", "current_loop_bandwidth; a curve"},
       {R"(drives\[\]\.actuator\..*)", "resonance_frequency and so on; a curve"},
+      {R"(workspace\.forces\..*)", "force_x and so on, over postures"},
+      {R"(.*\.(median|percentile_95))", "statistics are least, mean, most and deviation"},
+      {R"(.*\.turned_every_way\[\]\.angle)", "a level of any_orientation_turned_volume"},
       {R"(drives\[\]\.torque\.(guaranteed|greatest)\[\])", "guaranteed_torque_up and so on"},
       {R"(drives\[\]\.usable_pressure)", "usable_pressure"},
       {R"(forces\..*\.torque\[\])", "continuous_torque and peak_torque of a joint"},

@@ -74,7 +74,8 @@ TEST(Against, SaysWhatBothReachAndWhatOnlyOne) {
 TEST(Against, DevicesOfTwoKindsAreRefused) {
   const Outcome outcome = run({"workspace", "delta", "--against", "five-bar"});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_NE(outcome.err.find("plane"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("along x and y"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("same axes"), std::string::npos) << outcome.err;
   EXPECT_TRUE(outcome.out.empty());
 }
 

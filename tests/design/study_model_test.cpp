@@ -269,9 +269,11 @@ TEST(StudyModel, TheWorkspaceIsThatOfDataSheets) {
         mechanism, {.spacing = 0.02, .limits = drive_limits(drives, false), .all_figures = true});
     const auto compare = [&](const std::string& figure, const Statistic& expected, double factor = 1.0) {
       if (expected.count == 0) return;
-      for (const auto& [statistic, value] :
-           {std::pair("min", expected.min), std::pair("mean", expected.mean), std::pair("max", expected.max)}) {
-        EXPECT_NEAR(ask(figure, place, statistic) / (factor * value), 1.0, 1e-9) << device << " " << figure;
+      EXPECT_NEAR(ask(figure, place, "mean") / (factor * expected.mean), 1.0, 1e-9) << device << " " << figure;
+      // A study looks at the lattice alone; sheets lead its extremes to where they are.
+      EXPECT_GE(ask(figure, place, "min"), factor * expected.min * (1.0 - 1e-9)) << device << " " << figure;
+      if (!expected.unbounded) {
+        EXPECT_LE(ask(figure, place, "max"), factor * expected.max * (1.0 + 1e-9)) << device << " " << figure;
       }
     };
     compare("condition_number", sweep[Figure::condition_number]);
@@ -282,12 +284,11 @@ TEST(StudyModel, TheWorkspaceIsThatOfDataSheets) {
     compare("step_y", sweep[Figure::step_y]);
     compare("leg_singularity", sweep[Figure::leg_singularity]);
     if (mechanism.delta()) compare("platform_singularity", sweep[Figure::platform_singularity]);
-    const InertiaSweep inertia = sweep_inertia(mechanism, 0.02);
-    compare("apparent_mass_x", inertia.along_axes[0]);
-    compare("apparent_mass_min", inertia.lightest);
-    compare("apparent_mass_max", inertia.heaviest);
-    compare("gravity_torque", inertia.gravity_torque);
     const MechanicalSweep mechanics = sweep_mechanics(mechanism, drives, 0.02);
+    compare("apparent_mass_x", mechanics[MechanicalFigure::mass_x]);
+    compare("apparent_mass_min", mechanics[MechanicalFigure::lightest]);
+    compare("apparent_mass_max", mechanics[MechanicalFigure::heaviest]);
+    compare("gravity_torque", mechanics[MechanicalFigure::gravity_torque]);
     compare("acceleration_min", mechanics[MechanicalFigure::acceleration]);
     if (mechanics.of) {
       compare("stiffness_y", mechanics[MechanicalFigure::stiffness_y]);
@@ -319,18 +320,17 @@ TEST(StudyModel, PosturesAreThoseOfDataSheets) {
                                    }});
     const auto compare = [&](const std::string& figure, const PostureStatistic& expected) {
       if (expected.count == 0) return;
-      for (const auto& [statistic, value] :
-           {std::pair("min", expected.min), std::pair("mean", expected.mean), std::pair("max", expected.max)}) {
-        EXPECT_NEAR(ask(figure, place, statistic) / value, 1.0, 1e-6) << device << " " << figure;
+      EXPECT_NEAR(ask(figure, place, "mean") / expected.mean, 1.0, 1e-6) << device << " " << figure;
+      EXPECT_GE(ask(figure, place, "min"), expected.min * (1.0 - 1e-6)) << device << " " << figure;
+      if (!expected.unbounded) {
+        EXPECT_LE(ask(figure, place, "max"), expected.max * (1.0 + 1e-6)) << device << " " << figure;
       }
     };
-    compare("inverse_condition", sweep.translation_conditioning);
+    compare("translation_inverse_condition", sweep.translation_conditioning);
     compare("rotation_inverse_condition", sweep.rotation_conditioning);
     compare("manipulability", sweep.manipulability);
     compare("force_z", sweep.force[2]);
     compare("moment_y", sweep.moment[1]);
-    compare("apparent_mass_min", sweep.lightest);
-    compare("gravity_torque", sweep.gravity_torque);
   }
 }
 

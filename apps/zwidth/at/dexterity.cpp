@@ -7,7 +7,6 @@
 #include "section.h"
 
 #include "zwidth/analysis/force.h"
-#include "zwidth/math/svd.h"
 
 /// How evenly the tool moves and pushes.
 
@@ -45,44 +44,41 @@ Moving moving_rows(const Situation& at) {
   return moving;
 }
 
-/// A square Jacobian with the singular values of one that has fewer joints than rows; others as they are.
-Jacobian own_motions(const Jacobian& J) {
-  if (J.cols() >= J.rows()) return J;
-  return svd(J).u.leftCols(J.cols()).transpose() * J;
-}
-
 /// Translations and rotations by themselves, and both together with a radian as a length.
 void write_mixed(const Situation& at, const Moving& moving, Answer& answer) {
-  const auto& [J, units] = moving;
-  const std::string reason = "metres and radians cannot be compared: see homogeneous";
-  answer.undefined("condition_number", reason);
-  answer.undefined("manipulability", reason);
+  answer.undefined("manipulability", "metres and radians cannot be multiplied with each other");
   const bool shown = answer.wants("condition_number") || answer.wants("homogeneous");
   if (at.singularity.loses) {
+    answer.undefined("condition_number", "infinite: the Jacobian is singular here");
     answer.undefined("homogeneous", "the Jacobian is singular here");
     if (shown) answer.page().cells("condition number", {"infinite"}, "1 is best");
     return;
   }
-  const CharacteristicLength best = characteristic_length(J, units);
+  // In the base frame, as maps and data sheets have it.
+  const JacobianScale scale = jacobian_scale(at.mechanism);
+  const double condition = scale.condition_number(at.rates.tool);
+  answer.put("condition_number", json_number(condition));
   Json entry;
-  entry["length"] = json_number(best.length);
-  entry["condition_number"] = json_number(best.condition_number);
-  entry["isotropy"] = json_number(isotropy(own_motions(homogeneous(J, units, best.length))));
+  entry["length"] = json_number(scale.length);
+  entry["condition_number"] = json_number(condition);
+  entry["isotropy"] = json_number(isotropy(scale.motions(at.rates.tool)));
   const auto of_one_kind = [&](const char* key, const Jacobian& rows) {
-    const Dexterity figures = dexterity(rows);
+    const Dexterity figures = dexterity(scale.homogeneous_rows(rows));
     entry[key] = {{"condition_number", json_number(figures.condition_number)},
-                  {"isotropy", json_number(isotropy(rows))}};
+                  {"isotropy", json_number(isotropy(scale.homogeneous_rows(rows)))}};
     if (shown) answer.cell(fmt::format("condition number, {}", key), figures.condition_number, "1 is best");
   };
+  const auto& [J, units] = moving;
   const int linear = units.linear_rows;
-  if (units.sliding_joints == 0 && linear > 0 && linear < J.rows()) {
+  const bool both = linear > 0 && linear < J.rows();
+  if (both) {
     of_one_kind("translation", J.topRows(linear));
     of_one_kind("rotation", J.bottomRows(J.rows() - linear));
   }
   answer.put("homogeneous", entry);
   if (shown)
-    answer.cell("condition number, both", best.condition_number,
-                fmt::format("a radian as {} mm: least so{}", number(best.length * 1e3),
+    answer.cell(both ? "condition number, both" : "condition number", condition,
+                fmt::format("a radian as {} mm{}", number(scale.length * 1e3),
                             J.cols() < J.rows() ? "; of the motions that there are" : ""));
 }
 

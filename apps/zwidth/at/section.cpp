@@ -184,7 +184,7 @@ const std::vector<Section>& sections() {
        {"condition_number", "manipulability", "isotropy", "homogeneous"},
        write_dexterity,
        true,
-       "of a tool that moves and turns ask homogeneous, of another condition_number and isotropy"},
+       "homogeneous is of tools that move and turn, and of joints that turn and slide"},
       {"Dexterity", {"velocity_ellipsoid", "force_ellipsoid"}, write_ellipsoids, true},
       {"Dexterity", {"singularity"}, write_singularity},
       {"Motion", {"velocity", "acceleration"}, write_motion, true, kMotion},

@@ -36,8 +36,12 @@ PoseFlood flood_poses(const PoseGuide& guide, const PoseChart& chart, const Post
   const auto figures = static_cast<std::size_t>(options.figures);
   const Effort quiet{.threads = effort.threads, .cancel = effort.cancel};
   PoseFlood flood{.dimension = dimension, .spacing = h};
+  flood.offset.head(dimension) = options.offset.head(dimension);
   flood.values.resize(figures);
-  const auto coordinates = [h](const LatticeIndex& at) -> Vector3 { return h * Vector3(at[0], at[1], at[2]); };
+  const auto coordinates = [&flood](const LatticeIndex& at) { return flood.coordinates({.at = at}); };
+  const auto lead = [&](const Posture& start, const Pose& to) {
+    return options.lead ? options.lead(start, to) : guide.step(start, to);
+  };
 
   // The points of the last round with their postures; those of earlier rounds are not needed any more.
   std::vector<std::size_t> fresh;
@@ -56,11 +60,11 @@ PoseFlood flood_poses(const PoseGuide& guide, const PoseChart& chart, const Post
   for (int corner = 0; corner < 1 << dimension; ++corner) {
     LatticeIndex at{};
     for (int k = 0; k < dimension; ++k) {
-      const double low = std::floor(from[k] / h);
+      const double low = std::floor(from[k] / h - flood.offset[k]);
       at[k] = static_cast<std::int32_t>(low) + (corner >> k & 1);
     }
     if (flood.place.contains(at) || coordinates(at).norm() > options.most_radius) continue;
-    PoseGuide::Step step = guide.step(seed, chart.at(coordinates(at)));
+    PoseGuide::Step step = lead(seed, chart.at(coordinates(at)));
     if (!step.inside) continue;
     if (options.figure) options.figure(*step.posture, step.rates, row);
     add(at, *step.posture, row);
@@ -95,7 +99,7 @@ PoseFlood flood_poses(const PoseGuide& guide, const PoseChart& chart, const Post
         const bool allowed = goal.norm() <= options.most_radius;
         for (int n = 0; n < candidate.count && allowed; ++n) {
           PoseGuide::Step step =
-              guide.step(postures[candidate.from[static_cast<std::size_t>(n)].fresh], chart.at(goal));
+              lead(postures[candidate.from[static_cast<std::size_t>(n)].fresh], chart.at(goal));
           if (!step.inside) continue;
           if (options.figure)
             options.figure(*step.posture, step.rates, std::span(values).subspan(c * figures, figures));
@@ -111,7 +115,7 @@ PoseFlood flood_poses(const PoseGuide& guide, const PoseChart& chart, const Post
             const double middle = 0.5 * (in + out);
             const Vector3 between = start + middle * (goal - start);
             PoseGuide::Step step;
-            if (between.norm() <= options.most_radius) step = guide.step(last, chart.at(between));
+            if (between.norm() <= options.most_radius) step = lead(last, chart.at(between));
             if (step.inside) last = *step.posture;
             (step.inside ? in : out) = middle;
           }

@@ -23,8 +23,8 @@ struct LatticeIndexHash {
   }
 };
 
-/// Lattice points of a chart, the integer multiples of `spacing`, that a mechanism can be led to from a
-/// posture, from neighbour to neighbour without leaving its joint ranges or its branch.
+/// Lattice points of a chart, the integer multiples of `spacing` moved by `offset` of it, that a mechanism can
+/// be led to from a posture, from neighbour to neighbour without leaving its joint ranges or its branch.
 struct PoseFlood {
   struct Point {
     LatticeIndex at{};
@@ -35,19 +35,23 @@ struct PoseFlood {
 
   int dimension = 3;
   double spacing = 0.0;
-  bool complete = true;  ///< false if it was cancelled
-  bool full = false;     ///< it came to `most` points and went no further
+  Vector3 offset = Vector3::Zero();  ///< [spacing]
+  bool complete = true;              ///< false if it was cancelled
+  bool full = false;                 ///< it came to `most` points and went no further
   std::vector<Point> points;
   std::vector<std::vector<double>> values;                                ///< of each figure at every point
   std::unordered_map<LatticeIndex, std::size_t, LatticeIndexHash> place;  ///< in `points`
 
   Vector3 coordinates(const Point& point) const {
-    return spacing * Vector3(point.at[0], point.at[1], point.at[2]);
+    return spacing * (Vector3(point.at[0], point.at[1], point.at[2]) + offset);
   }
 };
 
 struct PoseFloodOptions {
   double spacing = 0.0;
+  Vector3 offset = Vector3::Zero();  ///< [spacing]
+  /// The short way from a posture to a pose; without, the guide's.
+  std::function<PoseGuide::Step(const Posture&, const Pose&)> lead;
   std::size_t most = std::numeric_limits<std::size_t>::max();
   bool exits = true;  ///< look for the boundary
   /// Coordinates farther than this from zero are left out.

@@ -66,6 +66,7 @@ Probe::Probe(const Mechanism& mechanism) : mechanism_(&mechanism), dimension_(to
     branch_ = mode_.left * mode_.right * assembly_mode_;
     return;
   }
+  scale_ = jacobian_scale(mechanism);
   if (mechanism.active_count() == 3) arm_ = positioning_form_of(mechanism);
   if (arm_.arm != nullptr) {
     arm_start_ = middle();
@@ -278,6 +279,15 @@ Probe::Answer Probe::forward(const Vector3& joints) {
 FigureValues Probe::figures(const Answer& answer, const DriveLimits& limits) const {
   FigureValues values = dimension_ == 2 ? plane_figures(answer.jacobian.topLeftCorner<2, 2>(), limits)
                                         : jacobian_figures(answer.jacobian, limits);
+  if (scale_.mixed) {
+    Matrix3 J = answer.jacobian;
+    for (int j = 0; j < dimension_; ++j) {
+      if (scale_.units.slides(j)) J.col(j) *= scale_.length;
+    }
+    const FigureValues homogeneous =
+        dimension_ == 2 ? plane_figures(J.topLeftCorner<2, 2>(), {}) : jacobian_figures(J, {});
+    values[static_cast<int>(Figure::condition_number)] = figure(homogeneous, Figure::condition_number);
+  }
   double leg = answer.leg_singularity, platform = answer.platform_singularity;
   if (five_bar_) {
     const FiveBarState state(*five_bar_, answer.joints.head<2>(), answer.position.head<2>());

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "zwidth/analysis/dexterity.h"
 #include "zwidth/mechanism/figure.h"
 #include "zwidth/mechanism/five_bar.h"
 #include "zwidth/mechanism/positioning_arm.h"
@@ -12,7 +13,7 @@ namespace zwidth::internal {
 
 /// Asks a mechanism whose tool translates, in space or in a plane, posture after posture. Follows on from the
 /// last answer where there is no closed form, so each thread has its own, and the same questions in the same
-/// order get the same answers.
+/// order get the same answers. Making one may take milliseconds: copy one that has not been asked yet.
 ///
 /// A tool in a plane keeps the height of the middle posture whatever z is asked for. Its two joints come with a
 /// third of value 0, its Jacobian with a third row and column of the identity, so that one code serves both.
@@ -66,6 +67,7 @@ class Probe {
 
   const Mechanism* mechanism_;
   int dimension_ = 3;
+  JacobianScale scale_;
   std::optional<RCubeGeometry> r_cube_;
   RCubeBranches r_cube_branches_;
   std::optional<FiveBarGeometry> five_bar_;

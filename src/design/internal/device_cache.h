@@ -5,10 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "zwidth/analysis/conditioning.h"
 #include "zwidth/analysis/orientation.h"
 #include "zwidth/analysis/pose_workspace.h"
-#include "zwidth/analysis/posture_sweep.h"
 #include "zwidth/analysis/reach.h"
 #include "zwidth/analysis/workspace.h"
 #include "zwidth/design/figures.h"
@@ -21,8 +19,8 @@ struct DeviceCache {
   std::optional<Extents> extents;
   std::optional<std::pair<Vector3, OrientationsAt>> turned;  // at the last place asked for
   std::map<std::int64_t, PoseWorkspace> poses;
+  std::map<std::int64_t, std::optional<AnyOrientation>> anyhow;
   std::map<std::int64_t, ReachMap> maps;
-  std::map<std::int64_t, PostureSweep> sweeps;
   std::map<std::pair<double, double>, InscribedShapes> shapes;
   std::map<std::pair<double, int>, DexterousRegion> regions;
   std::map<std::pair<double, int>, OrientationWorkspace> orientations;

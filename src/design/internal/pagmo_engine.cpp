@@ -15,6 +15,7 @@
 #include <pagmo/s11n.hpp>
 #include <random>
 #include <sstream>
+#include <tbb/task_arena.h>
 
 #include "zwidth/design/internal/bytes.h"
 #include "zwidth/design/internal/engine.h"
@@ -271,7 +272,9 @@ class PagmoEngine final : public Engine {
     // generation.
     const pagmo::algorithm before = algorithm_;
     try {
-      population_ = algorithm_.evolve(population_);
+      // pagmo checks what a batch was given and gave with TBB, which wakes every core for some microseconds'
+      // work.
+      alone_.execute([this] { population_ = algorithm_.evolve(population_); });
     } catch (...) {
       algorithm_ = before;
       throw;
@@ -360,6 +363,7 @@ class PagmoEngine final : public Engine {
   PagmoSpace space_;
   pagmo::algorithm algorithm_;
   pagmo::population population_;
+  tbb::task_arena alone_{1};
 };
 
 }  // namespace

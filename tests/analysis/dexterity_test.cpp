@@ -116,7 +116,8 @@ TEST(JacobianScale, GrowsWithTheDevice) {
     serial.platform = PlatformFreedom::point;
     if (arm == &small) continue;
     for (auto& joint : serial.joints) {
-      if (joint.type == SerialJointType::prismatic) joint.range = {2.0 * joint.range.min, 2.0 * joint.range.max};
+      if (joint.type == SerialJointType::prismatic)
+        joint.range = {2.0 * joint.range.min, 2.0 * joint.range.max};
     }
   }
   const JacobianScale one = jacobian_scale(Mechanism(small)), two = jacobian_scale(Mechanism(large));

@@ -408,7 +408,17 @@ ReadableUnit readable_unit(double magnitude, std::string_view si_unit) {
     if (scale.si != si_unit || (magnitude != 0.0 && std::abs(magnitude) < scale.from)) continue;
     return {scale.factor, std::string(scale.text)};
   }
-  return {1.0, si_unit == "1" ? "" : std::string(si_unit)};
+  if (si_unit == "1") return {};
+  // Small whole powers as people write them.
+  std::string text(si_unit);
+  for (const auto& [power, raised] : {std::pair("^2", "²"), std::pair("^3", "³")}) {
+    for (size_t at = text.find(power); at != text.npos; at = text.find(power, at + 1)) {
+      const bool whole =
+          at + 2 == text.size() || text[at + 2] == ' ' || text[at + 2] == '/' || text[at + 2] == ')';
+      if (whole) text.replace(at, 2, raised);
+    }
+  }
+  return {1.0, text};
 }
 
 std::string readable(double value, std::string_view si_unit, int digits) {

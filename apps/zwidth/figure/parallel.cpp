@@ -10,17 +10,16 @@ namespace zwidth {
 
 namespace {
 
-constexpr double kSide = 46.0;    // beside the outer axes, half a name
-constexpr double kBottom = 26.0;  // below them
-constexpr std::size_t kLongestName = 16;
+constexpr double kSide = 58.0;  // beside the outer axes, half a name
+constexpr std::size_t kLongestName = 14;
 constexpr double kTextRow = 15.0;
 
-// A name in rows short enough to stand above its axis, broken at its joints.
+// A text in rows short enough to stand above its axis, broken at its joints.
 std::vector<std::string> rows_of(const std::string& name) {
   std::vector<std::string> rows{""};
   std::size_t from = 0;
   while (from < name.size()) {
-    const std::size_t end = std::min(name.find_first_of(" _.", from), name.size() - 1) + 1;
+    const std::size_t end = std::min(name.find_first_of(" _.-/", from + 1), name.size() - 1) + 1;
     const std::string piece = name.substr(from, end - from);
     if (!rows.back().empty() && rows.back().size() + piece.size() > kLongestName) rows.emplace_back();
     rows.back() += piece;
@@ -33,13 +32,22 @@ std::vector<std::string> rows_of(const std::string& name) {
 
 std::string parallel_coordinates(double width, double height, const std::vector<ParallelAxis>& axes,
                                  std::optional<std::size_t> marked, std::string_view title) {
-  std::size_t rows = 1;
-  for (const ParallelAxis& axis : axes) rows = std::max(rows, rows_of(axis.name).size());
-  const double top = kTextRow * (static_cast<double>(rows) + 1.5);
+  // Numbers keep to one row, names of parts may take several.
+  const auto ends_of = [](const std::string& text) {
+    return text.size() <= kLongestName ? std::vector<std::string>{text} : rows_of(text);
+  };
+  std::size_t above = 1, below = 1;
+  for (const ParallelAxis& axis : axes) {
+    above = std::max(above, rows_of(axis.name).size() + ends_of(axis.high).size());
+    below = std::max(below, ends_of(axis.low).size());
+  }
+  const double top = kTextRow * (static_cast<double>(above) + 0.5);
+  const double bottom = kTextRow * (static_cast<double>(below) + 0.7);
+  height += top + bottom;
   const auto x = [&](std::size_t axis) {
     return kSide + (width - 2.0 * kSide) * static_cast<double>(axis) / static_cast<double>(axes.size() - 1);
   };
-  const auto y = [&](double share) { return height - kBottom - share * (height - kBottom - top); };
+  const auto y = [&](double share) { return height - bottom - share * (height - bottom - top); };
   const auto line = [&](std::size_t i, std::string_view style) {
     std::string path;
     for (std::size_t a = 0; a < axes.size(); ++a) {
@@ -59,16 +67,21 @@ std::string parallel_coordinates(double width, double height, const std::vector<
   for (std::size_t a = 0; a < axes.size(); ++a) {
     body += fmt::format("<path class=\"{}\" d=\"M{} {}V{}\"/>", axes[a].strong ? "limit" : "axis", pixel(x(a)),
                         pixel(y(0.0)), pixel(y(1.0)));
+    const auto write = [&](const std::string& row, double at, const char* kind) {
+      if (row.empty()) return;
+      body += fmt::format("<text class=\"{}\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>", kind,
+                          pixel(x(a)), pixel(at), escaped(row));
+    };
+    double at = y(1.0) - 5.0;
+    const std::vector<std::string> high = ends_of(axes[a].high), low = ends_of(axes[a].low);
+    for (std::size_t r = high.size(); r-- > 0; at -= kTextRow) write(high[r], at, "halo");
     const std::vector<std::string> name = rows_of(axes[a].name);
-    for (std::size_t r = 0; r < name.size(); ++r) {
-      const double above = kTextRow * (static_cast<double>(name.size() - r) + 0.4);
-      body += fmt::format("<text class=\"strong\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                          pixel(x(a)), pixel(y(1.0) - above), escaped(name[r]));
+    for (std::size_t r = name.size(); r-- > 0; at -= kTextRow) write(name[r], at, "strong");
+    at = y(0.0) + 15.0;
+    for (const std::string& row : low) {
+      write(row, at, "halo");
+      at += kTextRow;
     }
-    body += fmt::format("<text class=\"halo\" x=\"{0}\" y=\"{1}\" text-anchor=\"middle\">{2}</text>",
-                        pixel(x(a)), pixel(y(1.0) - 5.0), escaped(axes[a].high));
-    body += fmt::format("<text class=\"halo\" x=\"{0}\" y=\"{1}\" text-anchor=\"middle\">{2}</text>",
-                        pixel(x(a)), pixel(y(0.0) + 15.0), escaped(axes[a].low));
   }
   if (marked) body += line(*marked, "class=\"line s2\" style=\"stroke-width:3\"");
   return fmt::format("<svg class=\"figure\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">{}</svg>",

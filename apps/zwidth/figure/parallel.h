@@ -18,7 +18,7 @@ struct ParallelAxis {
 };
 
 /// One line for each entry of the axes' shares, `marked` among them drawn above the others. REQUIRES: two axes
-/// or more, all with as many shares.
+/// or more, all with as many shares. `height`: of the axes; texts above and below add theirs.
 std::string parallel_coordinates(double width, double height, const std::vector<ParallelAxis>& axes,
                                  std::optional<std::size_t> marked, std::string_view title);
 

@@ -13,9 +13,9 @@ namespace zwidth {
 
 namespace {
 
-constexpr double kLeft = 58.0;
+constexpr double kLeft = 58.0;  // at least; more where the numbers are long
 constexpr double kTop = 14.0;
-constexpr double kRight = 14.0;
+constexpr double kRight = 14.0;  // the same
 constexpr double kScale = 66.0;  // margin at the right that holds a scale of colours
 constexpr double kBottom = 46.0;
 constexpr int kBands = 14;
@@ -31,17 +31,58 @@ std::string tick_text(double value, double step) {
   return text;
 }
 
+// Where lines of the grid lie, and what stands at them; nothing at the finer ones of a logarithmic axis.
+std::vector<std::pair<double, std::string>> ticks_of(const Axis& axis, int about) {
+  std::vector<std::pair<double, std::string>> ticks;
+  if (!axis.logarithmic) {
+    const auto values = round_ticks(axis.range.min, axis.range.max, about);
+    const double step = values.size() > 1 ? values[1] - values[0] : 1.0;
+    for (const double value : values) ticks.emplace_back(value, tick_text(value, step));
+    return ticks;
+  }
+  for (double decade = std::pow(10.0, std::floor(std::log10(axis.range.min))); decade <= axis.range.max;
+       decade *= 10.0) {
+    for (int k = 1; k < 10; ++k) {
+      const double value = k * decade;
+      if (value < axis.range.min * 0.999 || value > axis.range.max * 1.001) continue;
+      ticks.emplace_back(value, k == 1 ? number(value, 1) : "");
+    }
+  }
+  return ticks;
+}
+
+constexpr int kTicksAlong = 6;
+int ticks_up(double height) {
+  return std::max(3, static_cast<int>((height - kTop - kBottom) / 45.0));
+}
+
+// Of text as the figure's style has it, in a wide typeface.
+double width_of(std::string_view text) {
+  constexpr double kDigit = 7.7;
+  return kDigit * columns(text);
+}
+
 }  // namespace
 
+void Plot::make_room() {
+  constexpr double kName = 20.0, kGap = 8.0;  // the axis' name stands upright at the very left
+  double widest = 0.0;
+  for (const auto& [value, text] : ticks_of(y_, ticks_up(height_))) widest = std::max(widest, width_of(text));
+  left_ = std::max(kLeft, kName + kGap + widest);
+  right_ = kRight;
+  const auto along = ticks_of(x_, kTicksAlong);
+  if (!along.empty()) right_ = std::max(kRight, width_of(along.back().second) / 2.0 + 2.0);
+}
+
 double Plot::right_margin() const {
-  return scale_.empty() ? kRight : kScale;
+  return scale_.empty() ? right_ : kScale;
 }
 
 double Plot::px(double x) const {
   const Interval& range = x_.range;
   const double share = x_.logarithmic ? std::log(x / range.min) / std::log(range.max / range.min)
                                       : (x - range.min) / range.width();
-  return kLeft + share * (width_ - kLeft - right_margin());
+  return left_ + share * (width_ - left_ - right_margin());
 }
 
 double Plot::py(double y) const {
@@ -52,7 +93,7 @@ double Plot::py(double y) const {
 }
 
 void Plot::keep_shape(bool with_scale) {
-  const double per_unit = (width_ - kLeft - (with_scale ? kScale : kRight)) / x_.range.width();
+  const double per_unit = (width_ - left_ - (with_scale ? kScale : right_)) / x_.range.width();
   height_ = kTop + kBottom + per_unit * y_.range.width();
 }
 
@@ -234,8 +275,8 @@ void Plot::horizontal(double y, std::string_view text, Side side) {
   over_ += fmt::format(
       "<path class=\"reference\" d=\"M{} {}H{}\"/><text class=\"halo\" x=\"{}\" y=\"{}\" "
       "text-anchor=\"{}\">{}</text>",
-      pixel(kLeft), pixel(py(y)), pixel(width_ - right_margin()),
-      pixel(left ? kLeft + 8.0 : width_ - right_margin() - 4.0), pixel(py(y) + (left ? 16.0 : -4.0)),
+      pixel(left_), pixel(py(y)), pixel(width_ - right_margin()),
+      pixel(left ? left_ + 8.0 : width_ - right_margin() - 4.0), pixel(py(y) + (left ? 16.0 : -4.0)),
       left ? "start" : "end", escaped(text));
 }
 
@@ -265,12 +306,37 @@ void Plot::rectangle(Point2 centre, double side, std::string_view text) {
   }
 }
 
-void Plot::mark(Point2 point, std::string_view text) {
+void Plot::mark(Point2 point, std::string_view text, int series) {
+  const double x = px(point.x), y = py(point.y), width = width_of(text);
+  constexpr double kAside = 7.0, kHeight = 14.0;
+  const bool left = x > 0.6 * width_;
+  // Beside the point and above it, or where no other mark's name stands yet.
+  MarkName chosen;
+  bool found = false;
+  for (const bool below : {false, true}) {
+    for (const bool other : {false, true}) {
+      const bool at_left = left != other;
+      const MarkName name{.x = at_left ? x - kAside - width : x + kAside,
+                          .y = below ? y + 15.0 : y - 6.0,
+                          .width = width,
+                          .at_left = at_left};
+      const bool taken = std::any_of(marks_.begin(), marks_.end(), [&](const MarkName& one) {
+        return name.x < one.x + one.width && one.x < name.x + width && std::abs(name.y - one.y) < kHeight;
+      });
+      const bool outside = name.x < left_ || name.x + width > width_ || name.y < kTop;
+      if (found || taken || outside) continue;
+      chosen = name;
+      found = true;
+    }
+  }
+  if (!found)
+    chosen = {.x = left ? x - kAside - width : x + kAside, .y = y - 6.0, .width = width, .at_left = left};
+  marks_.push_back(chosen);
   over_ += fmt::format(
-      "<circle class=\"f2\" cx=\"{0}\" cy=\"{1}\" r=\"3.5\"/><text class=\"strong halo\" x=\"{2}\" y=\"{3}\" "
+      "<circle class=\"f{6}\" cx=\"{0}\" cy=\"{1}\" r=\"3.5\"/><text class=\"strong halo\" x=\"{2}\" y=\"{3}\" "
       "text-anchor=\"{4}\">{5}</text>",
-      pixel(px(point.x)), pixel(py(point.y)), pixel(px(point.x) + (px(point.x) > 0.6 * width_ ? -7.0 : 7.0)),
-      pixel(py(point.y) - 6.0), px(point.x) > 0.6 * width_ ? "end" : "start", escaped(text));
+      pixel(x), pixel(y), pixel(chosen.at_left ? x - kAside : x + kAside), pixel(chosen.y),
+      chosen.at_left ? "end" : "start", escaped(text), series);
 }
 
 std::string Plot::svg(std::string_view title) const {
@@ -279,40 +345,24 @@ std::string Plot::svg(std::string_view title) const {
   const double right = width_ - right_margin();
   const double bottom = height_ - kBottom;
   std::string axes;
-  const auto ticks = [&](const Axis& axis, int about, auto draw) {
-    if (!axis.logarithmic) {
-      const auto values = round_ticks(axis.range.min, axis.range.max, about);
-      const double step = values.size() > 1 ? values[1] - values[0] : 1.0;
-      for (const double value : values) draw(value, tick_text(value, step));
-      return;
-    }
-    for (double decade = std::pow(10.0, std::floor(std::log10(axis.range.min))); decade <= axis.range.max;
-         decade *= 10.0) {
-      for (int k = 1; k < 10; ++k) {
-        const double value = k * decade;
-        if (value < axis.range.min * 0.999 || value > axis.range.max * 1.001) continue;
-        draw(value, k == 1 ? number(value, 1) : "");
-      }
-    }
-  };
-  ticks(x_, 6, [&](double value, const std::string& text) {
+  for (const auto& [value, text] : ticks_of(x_, kTicksAlong)) {
     axes += fmt::format("<path class=\"grid\" d=\"M{} {}V{}\"/>", pixel(px(value)), pixel(kTop), pixel(bottom));
     if (!text.empty()) {
       axes += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>", pixel(px(value)),
                           pixel(bottom + 16.0), text);
     }
-  });
-  ticks(y_, std::max(3, static_cast<int>((bottom - kTop) / 45.0)), [&](double value, const std::string& text) {
-    axes += fmt::format("<path class=\"grid\" d=\"M{} {}H{}\"/>", pixel(kLeft), pixel(py(value)), pixel(right));
+  }
+  for (const auto& [value, text] : ticks_of(y_, ticks_up(height_))) {
+    axes += fmt::format("<path class=\"grid\" d=\"M{} {}H{}\"/>", pixel(left_), pixel(py(value)), pixel(right));
     if (!text.empty()) {
-      axes += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>", pixel(kLeft - 6.0),
+      axes += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>", pixel(left_ - 6.0),
                           pixel(py(value) + 4.0), text);
     }
-  });
-  const std::string frame = fmt::format("<path class=\"axis\" d=\"M{} {}V{}H{}\"/>", pixel(kLeft), pixel(kTop),
+  }
+  const std::string frame = fmt::format("<path class=\"axis\" d=\"M{} {}V{}H{}\"/>", pixel(left_), pixel(kTop),
                                         pixel(bottom), pixel(right));
   std::string names = fmt::format("<text class=\"strong\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                                  pixel((kLeft + right) / 2.0), pixel(height_ - 12.0), escaped(x_.label));
+                                  pixel((left_ + right) / 2.0), pixel(height_ - 12.0), escaped(x_.label));
   names += fmt::format(
       "<text class=\"strong\" transform=\"translate(14 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
       pixel((kTop + bottom) / 2.0), escaped(y_.label));
@@ -320,7 +370,7 @@ std::string Plot::svg(std::string_view title) const {
   for (const auto& [series, label] : legend_) {
     names += fmt::format(
         "<path class=\"line s{}\" d=\"M{} {}h16\"/><text class=\"strong halo\" x=\"{}\" y=\"{}\">{}</text>",
-        series, pixel(kLeft + 12.0), pixel(legend_y - 4.0), pixel(kLeft + 34.0), pixel(legend_y),
+        series, pixel(left_ + 12.0), pixel(legend_y - 4.0), pixel(left_ + 34.0), pixel(legend_y),
         escaped(label));
     legend_y += 17.0;
   }
@@ -328,7 +378,7 @@ std::string Plot::svg(std::string_view title) const {
       "<svg class=\"figure\" viewBox=\"0 0 {0} {1}\" role=\"img\" aria-label=\"{2}\"><title>{2}</title>"
       "<clipPath id=\"CLIP\"><rect x=\"{3}\" y=\"{4}\" width=\"{5}\" "
       "height=\"{6}\"/></clipPath>{7}{8}{9}{10}{11}{12}</svg>",
-      pixel(width_), pixel(height_), escaped(title), pixel(kLeft), pixel(kTop), pixel(right - kLeft),
+      pixel(width_), pixel(height_), escaped(title), pixel(left_), pixel(kTop), pixel(right - left_),
       pixel(bottom - kTop), axes, body_, frame, over_, names, scale_);
   for (size_t at = result.find("CLIP"); at != std::string::npos; at = result.find("CLIP", at))
     result.replace(at, 4, id);

@@ -22,7 +22,9 @@ struct Axis {
 class Plot {
  public:
   Plot(double width, double height, Axis x, Axis y)
-      : width_(width), height_(height), x_(std::move(x)), y_(std::move(y)) {}
+      : width_(width), height_(height), x_(std::move(x)), y_(std::move(y)) {
+    make_room();
+  }
 
   /// One unit takes the same length along both axes; the plot's height follows. `with_scale`: colours will be
   /// explained at the right. Call it before anything is drawn.
@@ -40,7 +42,8 @@ class Plot {
   void vertical(double x, std::string_view text);
   void circle(Point2 centre, double radius, std::string_view text);
   void rectangle(Point2 centre, double side, std::string_view text);
-  void mark(Point2 point, std::string_view text);
+  /// A point with its name, which keeps clear of the names of marks before it.
+  void mark(Point2 point, std::string_view text, int series = 2);
   void silhouette(const std::vector<std::array<Point2, 3>>& triangles);     ///< their union, as a faint shadow
   void curves(const std::vector<std::vector<Point2>>& closed, int series);  ///< closed curves, filled
   /// Closed curves filled with a colour that carries a value, holes left out.
@@ -60,12 +63,22 @@ class Plot {
   double py(double y) const;
   std::string path(const std::vector<Point2>& points) const;
   std::string regions(const Field& field, double threshold) const;
+  void make_room();
   double right_margin() const;
+
+  /// Where the name of a mark stands [px].
+  struct MarkName {
+    double x = 0.0, y = 0.0, width = 0.0;
+    bool at_left = false;
+  };
 
   double width_;
   double height_;
   Axis x_;
   Axis y_;
+  double left_ = 0.0;  // margins [px]
+  double right_ = 0.0;
+  std::vector<MarkName> marks_;
   std::string body_;
   std::string over_;   // drawn above the axes
   std::string scale_;  // colour scale at the right

@@ -361,8 +361,8 @@ int optimise(OptimiseArguments arguments, const Terminal& terminal) {
   if (outcome.chosen && model->study().search.refine && !stop_on_interrupt()) refine_choice(outcome, *model);
   outcome.problem.evaluate = nullptr;
   ranks.reset();  // the others go home
+  find_start(outcome, *model);
   if (outcome.chosen && !stop_on_interrupt()) {
-    find_start(outcome, *model);
     find_sensitivity(outcome, *model, arguments.threads);
     try_tolerances(outcome, *model, arguments.threads, arguments.samples);
   }

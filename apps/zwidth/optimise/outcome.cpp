@@ -33,6 +33,11 @@ std::size_t StudyOutcome::best(std::size_t objective) const {
   return best;
 }
 
+std::optional<std::size_t> StudyOutcome::knee_row() const {
+  const std::size_t n = problem.objectives.size();
+  return n > 1 && !front.empty() ? knee(minimised(), n) : std::nullopt;
+}
+
 std::string value_text(const DesignValue& value) {
   if (!value.part.empty()) return value.part;
   if (std::isnan(value.value)) return "undefined";
@@ -41,19 +46,27 @@ std::string value_text(const DesignValue& value) {
   return unit == "1" ? trimmed(value.value, 6) : readable(value.value, unit);
 }
 
+std::string step_text(DesignValue value, double step) {
+  value.value = std::abs(step);
+  std::string text = value_text(value);
+  const std::size_t end = std::min(text.find(' '), text.size());
+  const std::string digits = text.substr(0, end);
+  if (digits.find('.') != digits.npos && digits.find('e') == digits.npos) {
+    const std::size_t last = digits.find_last_not_of('0');
+    text.replace(0, end, digits.substr(0, digits[last] == '.' ? last : last + 1));
+  }
+  return fmt::format("{}{}", step < 0.0 ? "−" : "+", text);
+}
+
 std::string amount(double value, const std::string& unit) {
   return std::isnan(value) ? "undefined" : readable(value, unit);
 }
 
-namespace {
-
-// The outermost function is a logarithm: what stands before it was multiplied shows as a difference.
-bool is_logarithm(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" -(");
-  return first != text.npos && (text.compare(first, 4, "log(") == 0 || text.compare(first, 6, "log10(") == 0);
+bool is_logarithm(const std::string& expression) {
+  const std::size_t first = expression.find_first_not_of(" -(");
+  return first != expression.npos &&
+         (expression.compare(first, 4, "log(") == 0 || expression.compare(first, 6, "log10(") == 0);
 }
-
-}  // namespace
 
 std::vector<OutcomeFigure> outcome_figures(const StudyModel& model) {
   const Study& study = model.study();
@@ -116,6 +129,15 @@ bool ChosenSensitivity::moves(std::size_t figure) const {
              return there[figure] != values[figure] && !std::isnan(there[figure]);
            });
          });
+}
+
+std::vector<std::size_t> ChosenSensitivity::told() const {
+  std::vector<std::size_t> list;
+  for (std::size_t f = 0; f < figures.size(); ++f) {
+    const bool said = std::any_of(list.begin(), list.end(), [&](std::size_t other) { return same(f, other); });
+    if (moves(f) && !said) list.push_back(f);
+  }
+  return list;
 }
 
 bool ChosenSensitivity::same(std::size_t a, std::size_t b) const {
@@ -206,6 +228,24 @@ std::string change_text(double before, double after, bool logarithm) {
                                    : fmt::format("{:+.{}f} %", percent, std::abs(percent) < 1.0 ? 2 : 1);
 }
 
+std::string tolerance_words(const Study& study) {
+  std::string text;
+  for (const StudyTolerance& one : study.tolerances) {
+    text += fmt::format("{}{} ±{}", text.empty() ? "" : ", ", one.name,
+                        one.relative ? trimmed(100.0 * one.half_width, 4) + " %"
+                                     : value_text({.name = "",
+                                                   .value = one.half_width,
+                                                   .part = "",
+                                                   .dimension = one.dimension.value_or(Dimension::number)}));
+  }
+  return text;
+}
+
+double deviation_of(const OutcomeSpread& spread) {
+  constexpr double kRounding = 1e-12;  // of the value: sums of some thousand samples lose no more
+  return spread.standard_deviation <= kRounding * std::abs(spread.nominal) ? 0.0 : spread.standard_deviation;
+}
+
 std::vector<ConstraintActivity> constraint_activity(const StudyOutcome& outcome, const StudyModel& model) {
   const Study& study = model.study();
   const DesignSheet& chosen = outcome.front[*outcome.chosen];
@@ -236,11 +276,10 @@ std::vector<ConstraintActivity> constraint_activity(const StudyOutcome& outcome,
       const SearchVariable& variable = outcome.problem.variables[found->smooth[i]];
       const double slope = found->slopes.slope[(found->figures.size() + c) * found->smooth.size() + i];
       const double step = -margins[c] / slope, range = variable.max - variable.min;
-      if (!std::isfinite(step) || std::abs(step) >= soonest * range) continue;
+      const double there = chosen.variables[found->smooth[i]].value + step;
+      if (!(there >= variable.min && there <= variable.max) || std::abs(step) >= soonest * range) continue;
       soonest = std::abs(step) / range;
-      DesignValue moved = chosen.variables[found->smooth[i]];
-      moved.value = std::abs(step);
-      one.broken_by = fmt::format("{} {}{}", variable.name, step < 0.0 ? "−" : "+", value_text(moved));
+      one.broken_by = fmt::format("{} {}", variable.name, step_text(chosen.variables[found->smooth[i]], step));
     }
     list.push_back(std::move(one));
   }
@@ -262,13 +301,7 @@ void write_sensitivity(const StudyOutcome& outcome, const StudyModel& model, She
     sheet.table({"constraint", "value", "limit", "to spare", "used up first by"}, rows);
     sheet.gap();
   }
-  // What nothing moves, and what another line says already, is left out.
-  std::vector<std::size_t> told;
-  for (std::size_t f = 0; f < found.figures.size(); ++f) {
-    const bool said =
-        std::any_of(told.begin(), told.end(), [&](std::size_t other) { return found.same(f, other); });
-    if (found.moves(f) && !said) told.push_back(f);
-  }
+  const std::vector<std::size_t> told = found.told();
   constexpr std::size_t kColumns = 4;
   for (std::size_t first = 0; first < found.smooth.size(); first += kColumns) {
     if (first == 0) {
@@ -282,9 +315,8 @@ void write_sensitivity(const StudyOutcome& outcome, const StudyModel& model, She
     for (std::size_t i = first; i < last; ++i) {
       const SearchVariable& variable = outcome.problem.variables[found.smooth[i]];
       head.push_back(variable.name);
-      DesignValue step = outcome.front[*outcome.chosen].variables[found.smooth[i]];
-      step.value = ChosenSensitivity::kPart * (variable.max - variable.min);
-      steps.push_back(fmt::format("+{}", value_text(step)));
+      steps.push_back(step_text(outcome.front[*outcome.chosen].variables[found.smooth[i]],
+                                ChosenSensitivity::kPart * (variable.max - variable.min)));
     }
     std::vector<std::vector<std::string>> rows{steps};
     for (const std::size_t f : told) {
@@ -329,7 +361,7 @@ void write_sensitivity(const StudyOutcome& outcome, const StudyModel& model, She
   std::string still;
   for (std::size_t f = 0; f < found.figures.size(); ++f) {
     if (found.moves(f)) continue;
-    still += fmt::format("{}{}", still.empty() ? "" : ", ", found.figures[f].name);
+    still += fmt::format("{}\"{}\"", still.empty() ? "" : ", ", found.figures[f].name);
   }
   if (!still.empty()) sheet.paragraph(fmt::format("Nothing of this changes {}.", still), 2, Tint::dim);
 }
@@ -397,6 +429,12 @@ Json outcome_json(const StudyOutcome& outcome, const StudyModel& model) {
                                      {"count", one.count},
                                      {"of", outcome.looked_at},
                                      {"example", one.example}});
+  }
+  document["start"] = nullptr;
+  if (outcome.start) {
+    document["start"] = sheet_json(*outcome.start, study);
+    document["start"]["feasible"] = outcome.start->feasible;
+    document["start"]["moved"] = outcome.start_moved;
   }
   document["pareto"] = Json::array();
   for (const DesignSheet& sheet : outcome.front) document["pareto"].push_back(sheet_json(sheet, study));
@@ -522,7 +560,24 @@ std::string outcome_text(const StudyOutcome& outcome, const StudyModel& model, c
         add("best " + study.objectives[o].name, outcome.front[outcome.best(o)]);
       }
       add("chosen", chosen);
+      if (outcome.start) add("the device", *outcome.start);
       sheet.table(head, rows);
+    }
+    if (outcome.start) {
+      std::string said;
+      if (study.objectives.size() == 1) {
+        said = fmt::format("{} {}", study.objectives.front().name,
+                           amount(outcome.start->objectives.front(), model.objective_units().front()));
+      }
+      sheet.row(
+          "the device",
+          said.empty() ? (outcome.start->feasible ? "meets all constraints" : "breaks constraints") : said,
+          fmt::format(
+              "{}{}",
+              said.empty()              ? ""
+              : outcome.start->feasible ? "meets all constraints"
+                                        : "breaks constraints",
+              outcome.start_moved ? (said.empty() ? "moved into the bounds" : "; moved into the bounds") : ""));
     }
     sheet.heading("Chosen design");
     sheet.paragraph(outcome.choice, 2, Tint::dim);
@@ -542,23 +597,14 @@ std::string outcome_text(const StudyOutcome& outcome, const StudyModel& model, c
     if (outcome.sensitivity) write_sensitivity(outcome, model, sheet);
     if (outcome.tolerances) {
       sheet.heading("Tolerances");
-      std::string strays;
-      for (const StudyTolerance& one : study.tolerances) {
-        strays +=
-            fmt::format("{}{} ±{}", strays.empty() ? "" : ", ", one.name,
-                        one.relative ? quantity(one.half_width, 100.0, "%")
-                                     : value_text({.name = "",
-                                                   .value = one.half_width,
-                                                   .part = "",
-                                                   .dimension = one.dimension.value_or(Dimension::number)}));
-      }
-      sheet.paragraph(fmt::format("{} samples of {}.", outcome.tolerances->samples, strays), 2, Tint::dim);
+      sheet.paragraph(fmt::format("{} samples of {}.", outcome.tolerances->samples, tolerance_words(study)), 2,
+                      Tint::dim);
       std::vector<std::vector<std::string>> rows;
       for (std::size_t o = 0; o < study.objectives.size(); ++o) {
         const OutcomeSpread& spread = outcome.tolerances->outcomes[o];
         const std::string& unit = model.objective_units()[o];
         rows.push_back({study.objectives[o].name, amount(spread.nominal, unit), amount(spread.mean.value, unit),
-                        amount(spread.standard_deviation, unit), amount(spread.percentile_5.value, unit),
+                        amount(deviation_of(spread), unit), amount(spread.percentile_5.value, unit),
                         amount(spread.percentile_95.value, unit)});
       }
       sheet.table({"objective", "designed", "mean", "deviation", "5 %", "95 %"}, rows);

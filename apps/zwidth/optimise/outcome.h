@@ -53,6 +53,8 @@ struct ChosenSensitivity {
   bool slides(std::size_t figure) const;
   /// Whether any variable does.
   bool moves(std::size_t figure) const;
+  /// Figures worth a line: not those that nothing moves, nor those that another line says already.
+  std::vector<std::size_t> told() const;
   /// Whether two figures are one number by two names.
   bool same(std::size_t a, std::size_t b) const;
   /// Change of a figure when a smooth variable grows by `kPart` of its range.
@@ -89,16 +91,29 @@ struct StudyOutcome {
   std::vector<double> minimised() const;
   /// Row of the front that is best in one objective.
   std::size_t best(std::size_t objective) const;
+  /// Row of the front that is its knee; nothing with one objective, or if it has none.
+  std::optional<std::size_t> knee_row() const;
 };
 
 /// "12.3 mm", "maxon-...", "0.571 rad": a variable for people.
 std::string value_text(const DesignValue& value);
 
-/// The same of a number with its SI unit.
+/// What a variable changes by: "+0.7 mm".
+std::string step_text(DesignValue value, double step);
+
+/// A number with its SI unit, for people.
 std::string amount(double value, const std::string& unit);
+
+/// Whether an expression is a logarithm: what it is taken of was multiplied where it changed by a difference.
+bool is_logarithm(const std::string& expression);
 
 /// "+1.2 %", of logarithms "+0.034"; "–" where there is no value after the change.
 std::string change_text(double before, double after, bool logarithm);
+
+/// "upper_arm ±0.1 mm, forearm ±0.1 mm".
+std::string tolerance_words(const Study& study);
+/// Standard deviation, 0 where it is rounding alone.
+double deviation_of(const OutcomeSpread& spread);
 
 /// How a constraint of the study stands at the chosen design, in words.
 struct ConstraintActivity {

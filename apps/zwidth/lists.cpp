@@ -90,7 +90,9 @@ int figures(const std::string& word, bool json, const Terminal& terminal) {
                       Tint::dim);
     }
   }
-  if (!any) {
+  const std::string reached =
+      "reached_share is the share of many postures, or of a box, that the tool reaches.";
+  if (!any && reached.find(word) == reached.npos) {
     std::vector<std::string> known;
     for (const FigureDefinition& figure : figure_definitions()) known.push_back(figure.name);
     throw InputError(fmt::format("figures {}: no figure is about that; {}", word, suggest(word, known)));
@@ -102,7 +104,7 @@ int figures(const std::string& word, bool json, const Terminal& terminal) {
     return kDone;
   }
   sheet.gap();
-  sheet.paragraph("reached_share is the share of many postures, or of a box, that the tool reaches.");
+  sheet.paragraph(reached);
   if (word.empty())
     sheet.paragraph("`zwidth figures stiffness` lists those about one thing, with their options.");
   print(sheet.text());

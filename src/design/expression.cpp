@@ -1,13 +1,11 @@
 #include "zwidth/design/expression.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
 #include <muParser.h>
 #include <mutex>
-#include <optional>
 
 #include "zwidth/description/problem.h"
 #include "zwidth/description/units.h"
@@ -64,23 +62,27 @@ std::string without_units(std::string_view text, ParsedExpression& problem) {
     const std::size_t end = number_end(text, i);
     const std::string_view number = text.substr(i, end - i);
     i = end;
-    std::size_t unit = end;
-    while (unit < text.size() && text[unit] == ' ') ++unit;
-    std::size_t unit_end = unit;
-    while (unit_end < text.size() && std::isalpha(static_cast<unsigned char>(text[unit_end])) != 0) ++unit_end;
-    if (unit_end == unit) {
+    const internal::NumberUnit unit = internal::number_unit(text, end - number.size(), end);
+    if (unit.text.empty()) {
       result += number;
       continue;
     }
-    const std::string with_unit = fmt::format("{} {}", number, text.substr(unit, unit_end - unit));
-    const std::optional<AnyQuantity> quantity = parse_any_quantity(with_unit);
-    if (!quantity) {
-      problem.rule = fmt::format("has '{}', which is no unit", text.substr(unit, unit_end - unit));
+    if (!unit.quantity) {
+      problem.rule = fmt::format("has '{}', which is no unit", unit.text);
       problem.advice = "write a product with *, units as in \"60 mm\"";
       return {};
     }
-    result += fmt::format("({})", quantity->value);
-    i = unit_end;
+    // The square of ten millimetres, or ten square millimetres?
+    const std::size_t next = text.find_first_not_of(' ', unit.end);
+    if (next != std::string_view::npos && text[next] == '^') {
+      problem.rule = fmt::format("raises '{}{}' to a power, which can be read in two ways", number,
+                                 text.substr(end, unit.end - end));
+      problem.advice = fmt::format("write ({}{})^2 for the power of the whole, or the number in SI", number,
+                                   text.substr(end, unit.end - end));
+      return {};
+    }
+    result += fmt::format("({})", unit.quantity->value);
+    i = unit.end;
   }
   return result;
 }

@@ -201,16 +201,11 @@ class Parser {
   Term literal() {
     const std::size_t end = internal::number_end(text_, at_);
     const std::string number(text_.substr(at_, end - at_));
-    std::size_t unit = end;
-    while (unit < text_.size() && text_[unit] == ' ') ++unit;
-    std::size_t unit_end = unit;
-    while (unit_end < text_.size() && internal::letter(text_[unit_end])) ++unit_end;
-    at_ = unit_end > unit ? unit_end : end;
+    const internal::NumberUnit unit = internal::number_unit(text_, at_, end);
+    at_ = unit.end;
     Term term{.unit = std::nullopt, .number = std::strtod(number.c_str(), nullptr)};
-    if (unit_end > unit) {
-      const auto quantity =
-          parse_any_quantity(fmt::format("{} {}", number, text_.substr(unit, unit_end - unit)));
-      if (quantity && quantity->dimension) term.unit = unit_powers(*quantity->dimension);
+    if (!unit.text.empty()) {
+      if (unit.quantity && unit.quantity->dimension) term.unit = unit_powers(*unit.quantity->dimension);
       term.number.reset();
     } else if (bare_ == BareNumber::pure) {
       term.unit = UnitPowers{};

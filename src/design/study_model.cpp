@@ -115,8 +115,9 @@ class Planner {
       std::vector<NumberSlot> slots = find_numbers(device_, key);
       if (slots.empty()) {
         const bool part = !find_parts(device_, key).empty();
+        const std::string which = keys.size() > 1 ? fmt::format("has {}, which ", key) : "";
         wrong(place, fmt::format("\"{}\"", key),
-              part ? "is a part of the device, not a number" : "is no number of the device",
+              which + (part ? "is a part of the device, not a number" : "is no number of the device"),
               part ? "list the parts to choose from with parts = [...]" : suggest(key, number_keys()));
       }
       for (NumberSlot& slot : slots) {
@@ -155,7 +156,9 @@ class Planner {
       for (const std::string& key : tolerance.keys) {
         const std::vector<NumberSlot> slots = find_numbers(device_, key);
         if (slots.empty()) {
-          wrong(at("tolerance", i, "key"), fmt::format("\"{}\"", key), "is no number of the device",
+          wrong(at("tolerance", i, "key"), fmt::format("\"{}\"", key),
+                (tolerance.keys.size() > 1 ? fmt::format("has {}, which ", key) : "") +
+                    "is no number of the device",
                 suggest(key, number_keys()));
         }
         for (const NumberSlot& slot : slots) {

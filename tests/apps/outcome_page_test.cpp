@@ -109,8 +109,17 @@ TEST(OutcomePage, SaysWhereTheDeviceIsNotADesignOfTheStudy) {
   text.replace(text.find("max = \"14 cm\""), 13, "max = \"8.5 cm\"");
   const Written done(text);
   ASSERT_EQ(done.outcome.status, 0) << done.outcome.err;
-  EXPECT_TRUE(done.says("device, moved into the bounds"));
+  EXPECT_TRUE(done.says("nearest to the device"));
   EXPECT_TRUE(done.outcome.json()["start"]["moved"].get<bool>());
+}
+
+// What a growth by 1 % of the range does is asked for, not drawn out from a slope: exp(0.6) - 1.
+TEST(OutcomePage, TellsWhatAChangeReallyDoes) {
+  std::string text = even_study(3);
+  text.replace(text.find("minimise = \"crank + coupler\""), 28, "minimise = \"exp(crank / 1 mm) + 0*coupler\"");
+  const Written done(text);
+  ASSERT_EQ(done.outcome.status, 0) << done.outcome.err;
+  EXPECT_TRUE(done.says("+82.2 %"));
 }
 
 TEST(OutcomePage, TellsOfDesignsThatMeetNotAllConstraints) {

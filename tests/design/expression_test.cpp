@@ -33,6 +33,15 @@ TEST(Expression, NumbersCarryUnits) {
   EXPECT_DOUBLE_EQ(value("1.5e3 mm + 2E-1 m"), 1.7);
   EXPECT_DOUBLE_EQ(value("0.5 MPa * 2"), 1e6);
   EXPECT_NEAR(value("180 deg"), M_PI, 1e-15);
+  EXPECT_DOUBLE_EQ(value("2 * 100 mN m"), 0.2);
+  EXPECT_DOUBLE_EQ(value("3 N m + m", {{"m", 1.0}}), 4.0);
+  EXPECT_DOUBLE_EQ(value("(10 mm)^2"), 1e-4);
+  EXPECT_FALSE(parse_expression("3 mm l2"));
+  EXPECT_FALSE(parse_expression("3 kg m"));
+  // Ten square millimetres, or the square of ten?
+  const ParsedExpression unclear = parse_expression("10 mm^2");
+  EXPECT_NE(unclear.rule.find("two ways"), std::string::npos) << unclear.rule;
+  EXPECT_NE(unclear.advice.find("(10 mm)^2"), std::string::npos) << unclear.advice;
 }
 
 TEST(Expression, NamesMayBeKeys) {

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <filesystem>
@@ -149,6 +150,12 @@ void find_sensitivity(StudyOutcome& outcome, const StudyModel& model, int thread
       step.feasible[side] = there.feasible;
     }
     found.steps.push_back(std::move(step));
+  }
+  for (const std::size_t v : found.smooth) {
+    const SearchVariable& variable = outcome.problem.variables[v];
+    std::vector<double> moved = design;
+    moved[v] += ChosenSensitivity::kPart * (variable.max - variable.min);
+    found.grown.push_back(figure_values(evaluator.sheet(moved), study));
   }
   if (!at.empty()) {
     const std::size_t outcomes = found.figures.size() + found.margins.size();
@@ -311,8 +318,19 @@ void refine_choice(StudyOutcome& outcome, const StudyModel& model) {
     options.ideal = range.min;
     options.nadir = range.max;
   }
-  const Refinement better = refine(outcome.problem, outcome.design(*outcome.chosen), options);
+  Progress progress(model.study().name, "designs");
+  double done = 0.0;
+  const auto start = std::chrono::steady_clock::now();
+  SearchProblem problem = outcome.problem;
+  problem.evaluate = [&](std::span<const double> designs, std::span<double> outcomes) {
+    done += static_cast<double>(designs.size() / problem.variables.size());
+    progress.update(done, static_cast<double>(options.evaluations), "local search, at most");
+    return outcome.problem.evaluate(designs, outcomes);
+  };
+  const Refinement better = refine(problem, outcome.design(*outcome.chosen), options);
   outcome.result.evaluations += better.evaluations;
+  outcome.result.seconds_evaluating +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!better.improved) return;
   SearchResult& result = outcome.result;
   result.front.push_back(result.designs.size() / outcome.problem.variables.size());

@@ -119,6 +119,7 @@ std::vector<double> margins_of(const DesignSheet& sheet) {
 bool ChosenSensitivity::slides(std::size_t figure) const {
   for (std::size_t i = 0; i < smooth.size(); ++i) {
     if (slopes.slope[figure * smooth.size() + i] != 0.0) return true;
+    if (grown[i][figure] != values[figure]) return true;
   }
   return false;
 }
@@ -144,13 +145,9 @@ bool ChosenSensitivity::same(std::size_t a, std::size_t b) const {
   if (values[a] != values[b]) return false;
   for (std::size_t i = 0; i < smooth.size(); ++i) {
     if (slopes.slope[a * smooth.size() + i] != slopes.slope[b * smooth.size() + i]) return false;
+    if (grown[i][a] != grown[i][b]) return false;
   }
   return true;
-}
-
-double ChosenSensitivity::change(std::size_t figure, std::size_t i, const SearchProblem& problem) const {
-  const SearchVariable& variable = problem.variables[smooth[i]];
-  return slopes.slope[figure * smooth.size() + i] * kPart * (variable.max - variable.min);
 }
 
 namespace {
@@ -268,7 +265,7 @@ std::vector<ConstraintActivity> constraint_activity(const StudyOutcome& outcome,
     one.share = margins[c] / size;
     one.active = one.share <= kActive;
     one.margin = amount(margins[c], unit);
-    if (nearest != 0.0) one.margin += fmt::format(" ({:.3g} %)", 100.0 * one.share);
+    if (nearest != 0.0) one.margin += fmt::format(" ({} %)", trimmed(100.0 * one.share, 3));
     // Which variable alone uses up the margin first, as far as a straight line tells.
     double soonest = 1.0;
     const auto& found = outcome.sensitivity;
@@ -323,8 +320,7 @@ void write_sensitivity(const StudyOutcome& outcome, const StudyModel& model, She
       if (!found.slides(f)) continue;
       std::vector<std::string> row{found.figures[f].name};
       for (std::size_t i = first; i < last; ++i) {
-        row.push_back(change_text(found.values[f], found.values[f] + found.change(f, i, outcome.problem),
-                                  found.figures[f].logarithm));
+        row.push_back(change_text(found.values[f], found.grown[i][f], found.figures[f].logarithm));
       }
       rows.push_back(std::move(row));
     }
@@ -508,8 +504,12 @@ std::string outcome_text(const StudyOutcome& outcome, const StudyModel& model, c
     }
     if (std::isfinite(last.hypervolume) && study.objectives.size() > 1) {
       std::string reference;
-      for (const double one : result.reference) reference += (reference.empty() ? "" : ", ") + number(one);
-      sheet.row("hypervolume", number(last.hypervolume), "up to (" + reference + ")");
+      for (std::size_t o = 0; o < study.objectives.size(); ++o) {
+        const double sign = study.objectives[o].maximise ? -1.0 : 1.0;
+        reference += fmt::format("{}{} {}", reference.empty() ? "" : ", ", study.objectives[o].name,
+                                 amount(sign * result.reference[o], model.objective_units()[o]));
+      }
+      sheet.row("hypervolume", number(last.hypervolume), fmt::format("SI, up to {}", reference));
     }
   }
   if (result.failures > 0) {
@@ -560,24 +560,17 @@ std::string outcome_text(const StudyOutcome& outcome, const StudyModel& model, c
         add("best " + study.objectives[o].name, outcome.front[outcome.best(o)]);
       }
       add("chosen", chosen);
-      if (outcome.start) add("the device", *outcome.start);
+      if (outcome.start) add(outcome.start_moved ? "nearest to the device" : "the device", *outcome.start);
       sheet.table(head, rows);
     }
     if (outcome.start) {
-      std::string said;
-      if (study.objectives.size() == 1) {
-        said = fmt::format("{} {}", study.objectives.front().name,
-                           amount(outcome.start->objectives.front(), model.objective_units().front()));
-      }
-      sheet.row(
-          "the device",
-          said.empty() ? (outcome.start->feasible ? "meets all constraints" : "breaks constraints") : said,
-          fmt::format(
-              "{}{}",
-              said.empty()              ? ""
-              : outcome.start->feasible ? "meets all constraints"
-                                        : "breaks constraints",
-              outcome.start_moved ? (said.empty() ? "moved into the bounds" : "; moved into the bounds") : ""));
+      std::string said = outcome.start_moved ? "the nearest design within the bounds " : "";
+      said += outcome.start->feasible ? "meets all constraints" : "breaks constraints";
+      sheet.row("the device",
+                study.objectives.size() > 1
+                    ? ""
+                    : amount(outcome.start->objectives.front(), model.objective_units().front()),
+                said);
     }
     sheet.heading("Chosen design");
     sheet.paragraph(outcome.choice, 2, Tint::dim);

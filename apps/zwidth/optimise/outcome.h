@@ -39,6 +39,8 @@ struct ChosenSensitivity {
   std::vector<std::size_t> smooth;  ///< variables that may have any value
   /// Of figures and margins, along those; empty if there are none.
   Sensitivity slopes;
+  /// The figures when one of those has grown by `kPart` of its range, which its limits may forbid.
+  std::vector<std::vector<double>> grown;
 
   /// A variable with steps, whole numbers or parts, one step down and one up.
   struct Step {
@@ -57,8 +59,6 @@ struct ChosenSensitivity {
   std::vector<std::size_t> told() const;
   /// Whether two figures are one number by two names.
   bool same(std::size_t a, std::size_t b) const;
-  /// Change of a figure when a smooth variable grows by `kPart` of its range.
-  double change(std::size_t figure, std::size_t i, const SearchProblem& problem) const;
   static constexpr double kPart = 0.01;
 };
 

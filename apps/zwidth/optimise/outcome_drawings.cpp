@@ -212,7 +212,7 @@ class Drawings {
         bars.push_back(bar(variable.name,
                            step_text(chosen.variables[found.smooth[i]],
                                      ChosenSensitivity::kPart * (variable.max - variable.min)),
-                           found.values[o] + found.change(o, i, outcome_.problem)));
+                           found.grown[i][o]));
       }
       add_tornado(o, "sensitivity", "One per cent of its range more of each variable.", std::move(bars));
       bars.clear();

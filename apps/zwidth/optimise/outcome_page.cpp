@@ -115,9 +115,7 @@ class OutcomePage {
     return study_.objectives[o].maximise ? a.objectives[o] > b.objectives[o]
                                          : a.objectives[o] < b.objectives[o];
   }
-  std::string device_name() const {
-    return outcome_.start_moved ? "device, moved into the bounds" : "device as it is";
-  }
+  std::string device_name() const { return outcome_.start_moved ? "nearest to the device" : "device as it is"; }
 
   void section(const std::string& id, const std::string& title) {
     if (!contents_.empty()) body_ += "</section>\n";
@@ -183,8 +181,9 @@ class OutcomePage {
     std::string text;
     if (outcome_.start_moved) {
       text =
-          "The device itself lies outside the bounds of the study, or has no value for a variable: what stands "
-          "beside the chosen design is the nearest one within them. ";
+          "The device itself is no design of this study: a variable lies outside its bounds there, or has no "
+          "key in "
+          "the device and stands in its middle. What stands beside the chosen design is the nearest one. ";
     }
     if (!outcome_.start->built) {
       text += "It cannot be built, or something asked of it is undefined.";
@@ -420,9 +419,7 @@ class OutcomePage {
         if (!found.slides(f)) continue;
         std::vector<Cell> row{{found.figures[f].name}, {amount(found.values[f], found.figures[f].unit), "n"}};
         for (std::size_t i = 0; i < found.smooth.size(); ++i) {
-          row.push_back({change_text(found.values[f], found.values[f] + found.change(f, i, outcome_.problem),
-                                     found.figures[f].logarithm),
-                         "n"});
+          row.push_back({change_text(found.values[f], found.grown[i][f], found.figures[f].logarithm), "n"});
         }
         rows.push_back(std::move(row));
       }

@@ -130,6 +130,16 @@ std::vector<std::vector<std::string>> mechanics_rows(const MechanicalPostures& s
   return rows_of(sweep);
 }
 
+ShownUnit gravity_unit(const std::vector<bool>& joint_slides) {
+  const bool any = std::ranges::any_of(joint_slides, [](bool slides) { return slides; });
+  if (any && !all_slide(joint_slides)) return {"N m or N", 1.0};
+  return shown_unit(MechanicalFigure::gravity_torque, any);
+}
+
+std::string gravity_label(const std::vector<bool>& joint_slides) {
+  return fmt::format("{} against gravity", effort_word(joint_slides));
+}
+
 bool knows_inertia(const MechanicalSweep& sweep) {
   return known(sweep, MechanicalFigure::lightest) || known(sweep, MechanicalFigure::gravity_torque);
 }
@@ -137,9 +147,9 @@ bool knows_inertia(const MechanicalSweep& sweep) {
 std::vector<std::vector<std::string>> inertia_rows(const MechanicalSweep& sweep,
                                                    const std::vector<bool>& joint_slides) {
   std::vector<std::vector<std::string>> rows;
-  const bool slides = all_slide(joint_slides);
   const auto add = [&](const std::string& label, MechanicalFigure which) {
-    const ShownUnit shown = shown_unit(which, slides);
+    const ShownUnit shown =
+        which == MechanicalFigure::gravity_torque ? gravity_unit(joint_slides) : shown_unit(which);
     if (known(sweep, which))
       rows.push_back(statistic_cells(label, sweep[which], shown.factor, shown.unit, true));
   };
@@ -148,7 +158,7 @@ std::vector<std::vector<std::string>> inertia_rows(const MechanicalSweep& sweep,
   add("apparent mass along z", MechanicalFigure::mass_z);
   add("in the lightest direction", MechanicalFigure::lightest);
   add("in the heaviest direction", MechanicalFigure::heaviest);
-  add(slides ? "force against gravity" : "torque against gravity", MechanicalFigure::gravity_torque);
+  add(gravity_label(joint_slides), MechanicalFigure::gravity_torque);
   return rows;
 }
 

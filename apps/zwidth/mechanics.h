@@ -25,6 +25,10 @@ ShownUnit shown_unit(MechanicalFigure which, bool slides = false);
 /// A row of `statistic_cells` per figure that is known.
 std::vector<std::vector<std::string>> mechanics_rows(const MechanicalSweep& sweep);
 std::vector<std::vector<std::string>> mechanics_rows(const MechanicalPostures& sweep);
+/// Of what holds the device's own weight: torques, forces, or of joints of both kinds the largest number.
+ShownUnit gravity_unit(const std::vector<bool>& joint_slides);
+/// "torque against gravity".
+std::string gravity_label(const std::vector<bool>& joint_slides);
 /// Whether it has anything to say of these rows: apparent masses, and the torque or force against gravity.
 bool knows_inertia(const MechanicalSweep& sweep);
 std::vector<std::vector<std::string>> inertia_rows(const MechanicalSweep& sweep,

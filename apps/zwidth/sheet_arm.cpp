@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "efforts.h"
+#include "mechanics.h"
 #include "sheet_json.h"
 #include "sheet_text.h"
 #include "statistic_text.h"
@@ -155,7 +155,8 @@ std::vector<PostureTable> arm_tables(const DataSheet& sheet, const Mechanism& me
   TableBuilder dexterity("dexterity", "Dexterity over the joint ranges",
                          postures + ". Conditioning is 1/(condition number): 1 is isotropic, 0 singular.");
   dexterity.row("conditioning, translation", sweep.translation_conditioning, 1.0, "");
-  dexterity.row("conditioning, rotation", sweep.rotation_conditioning, 1.0, "");
+  if (sweep.rotation_conditioning.max > 0.0)  // else it does not turn every way, wherever it is
+    dexterity.row("conditioning, rotation", sweep.rotation_conditioning, 1.0, "");
   double factor = 1.0;
   const std::string unit = manipulability_unit(mechanism, mechanism.linear_rows(), factor);
   dexterity.row("manipulability, translation", sweep.manipulability, factor, unit);
@@ -185,9 +186,9 @@ std::vector<PostureTable> arm_tables(const DataSheet& sheet, const Mechanism& me
                     masses.solved));
     inertia.row("in the lightest direction", masses[MechanicalFigure::lightest], kMilli, "g");
     inertia.row("in the heaviest direction", masses[MechanicalFigure::heaviest], kMilli, "g");
-    const bool slides = all_slide(sheet.joint_slides);
-    inertia.row(slides ? "force against gravity" : "torque against gravity",
-                masses[MechanicalFigure::gravity_torque], slides ? 1.0 : kMilli, slides ? "N" : "mN m");
+    const ShownUnit shown = gravity_unit(sheet.joint_slides);
+    inertia.row(gravity_label(sheet.joint_slides), masses[MechanicalFigure::gravity_torque], shown.factor,
+                shown.unit);
   }
   inertia.into(tables);
 
@@ -325,8 +326,19 @@ std::vector<ArmFact> pose_facts(const PoseWorkspace& workspace) {
   const bool in_plane = workspace.axes == std::vector<int>{0, 1};
   const std::string orientation = orientation_words(workspace.orientation, in_plane);
   if (!workspace.reached) return {{"orientation", "not reached", orientation}};
+  if (n == 0) {
+    if (workspace.rotation.figure.count > 0) {
+      facts.push_back({"conditioning", number(workspace.rotation.of_all.index(), 4),
+                       "mean of 1/(condition number K) over its orientations, 1 is best"});
+      facts.push_back(
+          {"  nearest to isotropic", fmt::format("K = {}", number(1.0 / workspace.rotation.figure.max)), ""});
+      facts.push_back({fmt::format("  near isotropic, K < {:g}", kNearIsotropic),
+                       near_isotropic_share(workspace.rotation.of_all), "of the orientations"});
+      facts.push_back({"  share by K", "", shares_by_class(workspace.rotation.of_all)});
+    }
+    return facts;
+  }
   facts.push_back({"orientation", orientation, "of the tool, kept"});
-  if (n == 0) return facts;
   if (workspace.unbounded) {
     facts.push_back({"workspace", "unbounded", "nothing ends it: give the sliding joints ranges"});
     return facts;
@@ -352,7 +364,7 @@ std::vector<ArmFact> pose_facts(const PoseWorkspace& workspace) {
                      "centre " + place_text(workspace, inscribed.cube.centre)});
   }
   const auto conditioning = [&](const char* name, const PoseConditioning& part, const std::string& of) {
-    if (part.figure.count == 0) return;
+    if (part.figure.count == 0 || !(part.figure.max > 0.0)) return;  // it does not move every way at all
     facts.push_back({name, number(part.of_all.index(), 4), of});
     facts.push_back({"  nearest to isotropic", fmt::format("K = {}", number(1.0 / part.figure.max)),
                      "at " + place_text(workspace, part.figure.max_at)});
@@ -373,8 +385,9 @@ std::vector<ArmFact> pose_load_facts(const PoseWorkspace& workspace) {
   std::vector<ArmFact> facts;
   const auto add = [&](const std::string& name, const Statistic& statistic, double factor, const char* unit) {
     if (statistic.count == 0) return;
-    facts.push_back({name, interval(statistic.min, statistic.max, factor, unit),
-                     fmt::format("mean {}", quantity(statistic.mean, factor, unit))});
+    facts.push_back({name, quantity(statistic.median.value_or(statistic.mean), factor, unit),
+                     fmt::format("median; above {} at 95 of 100",
+                                 quantity(statistic.percentile_5.value_or(statistic.min), factor, unit))});
   };
   for (std::size_t k = 0; k < 3; ++k)
     add(fmt::format("force along {}", kAxes[k]), workspace.force[k], 1.0, "N");
@@ -432,7 +445,14 @@ std::vector<ArmFact> turning_facts(const TurningRange& turning) {
                      whole ? "all round" : interval(range->min, range->max, kDegrees, "°"),
                      facts.empty() ? where + ", from " + from : std::string(whole ? "" : "alone")});
   }
-  if (turning.share && facts.size() == 3) {
+  const std::size_t ways = facts.size();
+  if (turning.share && ways == 2) {
+    facts.push_back(
+        {"directions",
+         fmt::format("{} ± {} %", number(100.0 * *turning.share, 3), number(100.0 * turning.share_error, 1)),
+         "of the sphere, for the axis that it does not turn about"});
+  }
+  if (turning.share && ways == 3) {
     facts.push_back(
         {"orientations",
          fmt::format("{} ± {} %", number(100.0 * *turning.share, 3), number(100.0 * turning.share_error, 1)),

@@ -266,6 +266,16 @@ std::optional<SheetFigure> device_picture(const DataSheet& sheet, const Descript
         grow(p - foot * Vector3::Unit(k));
       }
     }
+    // And for the platform with its balls.
+    std::vector<Vector3> ends = {solution.posture->tool().position};
+    for (std::size_t l = 0; l < mechanism.legs().size(); ++l)
+      ends.push_back(solution.posture->leg_tip(static_cast<int>(l)));
+    for (const Vector3& end : ends) {
+      for (int k = 0; k < 3; ++k) {
+        grow(end + 0.4 * foot * Vector3::Unit(k));
+        grow(end - 0.4 * foot * Vector3::Unit(k));
+      }
+    }
   }
   View view{.azimuth = -1.32,
             .elevation = 0.34,
@@ -291,7 +301,8 @@ std::optional<SheetFigure> device_picture(const DataSheet& sheet, const Descript
   draw_mesh(solid, mesh, workspace_centre, true);
   std::string caption =
       std::string(arm ? "In its home posture" : "In the middle of its joint ranges") +
-      (pose && sheet.arm->pose->dimension() == 2 ? ", with what its tool reaches without turning."
+      (pose && sheet.arm->pose->dimension() < 2    ? "."
+       : pose && sheet.arm->pose->dimension() == 2 ? ", with what its tool reaches without turning."
        : pose
            ? ", with three cuts through what its tool reaches without turning: normal to x violet, to y green, "
              "to z blue."

@@ -259,6 +259,7 @@ Json statistic_entry(const Statistic& statistic) {
   entry["max"] = endless ? Json(nullptr) : json_number(statistic.max);
   entry["mean"] = endless && statistic.median ? Json(nullptr) : json_number(statistic.mean);
   if (statistic.median) entry["median"] = json_number(*statistic.median);
+  if (statistic.percentile_5) entry["percentile_5"] = json_number(*statistic.percentile_5);
   if (statistic.percentile_95) entry["percentile_95"] = json_number(*statistic.percentile_95);
   entry["min_at"] = json_array(statistic.min_at);
   entry["max_at"] = json_array(statistic.max_at);

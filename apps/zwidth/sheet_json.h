@@ -13,7 +13,7 @@ Json data_sheet_json(const DataSheet& sheet, const Description& description);
 Json conditioning_json(const GlobalConditioning& conditioning);
 Json conditioning_json(const WorkspaceConditioning& conditioning);
 Json dexterous_json(const DexterousRegion& region);
-/// Also median and 95th percentile where they were asked for. A largest value that grows without end is null,
+/// Also median and percentiles where they were asked for. A largest value that grows without end is null,
 /// and "unbounded" true; so is then a mean that goes with quantiles, which no lattice settles.
 Json statistic_json(const Statistic& statistic);
 Json statistic_json(const PostureStatistic& statistic);

@@ -26,7 +26,7 @@ std::vector<std::string> statistic_cells(const std::string& label, const Statist
     row.push_back(known && statistic.median ? number(*statistic.median * factor) : "–");
     row.push_back(known && statistic.percentile_95 ? number(*statistic.percentile_95 * factor) : "–");
   } else {
-    row.push_back(known ? number(statistic.mean * factor) : "–");
+    row.push_back(!known ? "–" : std::isfinite(statistic.mean) ? number(statistic.mean * factor) : "no bound");
   }
   row.push_back(known ? largest_text(statistic, factor) : "–");
   row.push_back(unit);

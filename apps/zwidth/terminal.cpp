@@ -430,7 +430,9 @@ std::string readable(double value, std::string_view si_unit, int digits) {
 }
 
 std::string interval(double min, double max, double factor, std::string_view unit, int digits) {
-  return fmt::format("{} … {} {}", number(min * factor, digits), number(max * factor, digits), unit);
+  // What rounding leaves of an end at zero.
+  const auto end = [&](double value) { return std::abs(value) < 1e-7 * (max - min) ? 0.0 : value * factor; };
+  return fmt::format("{} … {} {}", number(end(min), digits), number(end(max), digits), unit);
 }
 
 }  // namespace zwidth

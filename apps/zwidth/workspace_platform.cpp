@@ -118,14 +118,15 @@ int platform_workspace(const WorkspaceArguments& arguments, const Model& model, 
   }
   Sheet sheet(terminal);
   sheet.title(fmt::format("{}: workspace", model.description.name),
-              "of the tool in one orientation, device frame");
+              workspace.dimension() > 0 ? "of the tool in one orientation, device frame"
+                                        : "of a tool that only turns, device frame");
   for (const ArmFact& fact : pose_facts(workspace)) sheet.row(fact.name, fact.value, fact.note);
   const std::vector<ArmFact> loads = pose_load_facts(workspace);
   if (!loads.empty()) sheet.heading("Forces, continuous");
   for (const ArmFact& fact : loads) sheet.row(fact.name, fact.value, fact.note);
   if (!loads.empty())
     sheet.paragraph(
-        "Pure forces and pure moments over these places, whichever way is weaker; the device's own weight is "
+        "Pure forces and pure moments, whichever way is weaker; the device's own weight is "
         "not taken off.",
         2, Tint::dim);
   const std::vector<ArmFact> anyhow = any_orientation_facts(workspace);

@@ -1,6 +1,8 @@
 #include "zwidth/analysis/arm_sheet.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "zwidth/mechanism/dynamics.h"
 
@@ -84,6 +86,20 @@ ArmSheet arm_sheet(const Mechanism& mechanism, const TorqueSource& continuous, c
       reach_map(arm, {.samples = options.reach_postures, .spacing = options.reach_spacing}, quiet);
   report(0.6);
   ReachSheet reach{.volume = reachable_volume(map), .inscribed = inscribed_shapes(map)};
+  // Counted in cubes: no wider than the reach itself.
+  for (int axis = 0; axis < 3; ++axis) {
+    const Interval range{sheet.ends[axis][0].distance, sheet.ends[axis][1].distance};
+    InscribedShape &sphere = reach.inscribed.sphere, &cube = reach.inscribed.cube;
+    const auto fit = [&](InscribedShape& shape, double half) {
+      const double most = std::min(half, 0.5 * range.width());
+      shape.centre[axis] = std::clamp(shape.centre[axis], range.min + most, range.max - most);
+      return most;
+    };
+    sphere.size = fit(sphere, sphere.size);
+    cube.size = 2.0 * fit(cube, 0.5 * cube.size);
+    sphere.volume = 4.0 / 3.0 * std::numbers::pi * std::pow(sphere.size, 3);
+    cube.volume = std::pow(cube.size, 3);
+  }
   Vector3 through = reach.inscribed.sphere.centre;
   if (sheet.home && map.contains(sheet.home->tool.position)) through = sheet.home->tool.position;
   if (options.slice_postures > 0) {

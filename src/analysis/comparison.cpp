@@ -102,7 +102,7 @@ PoseFlood flood_cells(const Mechanism& mechanism, double spacing, const Comparis
 class Cells {
  public:
   Cells(const Mechanism& mechanism, const ComparisonOptions& options, double spacing, const Effort& effort)
-      : mechanism_(mechanism), spacing_(spacing) {
+      : spacing_(spacing) {
     if (kind_of(mechanism) == Kind::flood) {
       flood_ = flood_cells(mechanism, spacing, options, effort);
       for (std::size_t axis = 0; axis < 3; ++axis)
@@ -163,7 +163,6 @@ class Cells {
   };
 
  private:
-  const Mechanism& mechanism_;
   double spacing_;
   Box box_{};
   std::optional<ReachMap> map_;

@@ -9,6 +9,7 @@
 #include "zwidth/description/names.h"
 #include "zwidth/description/units.h"
 #include "zwidth/description/values.h"
+#include "zwidth/math/svd.h"
 #include "zwidth/mechanism/family_of.h"
 #include "zwidth/mechanism/jacobian.h"
 
@@ -180,7 +181,7 @@ std::optional<PostureSheet> middle_posture(const Mechanism& mechanism, const Dat
   middle.active = active;
   middle.position = posture.tool().position;
   middle.jacobian = J;
-  middle.condition_number = dexterity(jacobian_scale(mechanism).homogeneous_rows(J)).condition_number;
+  middle.condition_number = jacobian_scale(mechanism).rows_condition_number(J);
   middle.manipulability = dexterity(J).manipulability;
   middle.gravity_torques = gravity_torques(posture, rate);
   if (has_mass(mechanism)) middle.apparent_mass = apparent_mass(cartesian_mass(J, mass_matrix(posture, rate)));
@@ -279,6 +280,17 @@ PlaneSheet plane_sheet(const Mechanism& mechanism, const LatticeOptions& lattice
   return plane;
 }
 
+// What the tool can do of its components, by the Jacobian at home.
+int freedoms_of(const Mechanism& mechanism) {
+  ActiveVector home(mechanism.active_count());
+  for (int i = 0; i < home.size(); ++i) home[i] = mechanism.home_guess()[mechanism.active_joint(i)];
+  const Solution solution = solve_forward(mechanism, home);
+  if (!solution || solution.status == SolveStatus::degraded) return mechanism.tool_rows();
+  constexpr double kNothing = 1e-9;
+  const SmallVector sigma = svd(jacobian_scale(mechanism).homogeneous(jacobian(*solution.posture))).sigma;
+  return static_cast<int>(std::ranges::count_if(sigma, [&](double s) { return s > kNothing * sigma[0]; }));
+}
+
 void add_drive_warnings(DataSheet& sheet) {
   const auto warn = [&sheet](const std::string& joints, const std::vector<Margin>& margins) {
     for (const Margin& margin : margins) {
@@ -345,7 +357,7 @@ DataSheet data_sheet(const Description& description, const DataSheetOptions& opt
   sheet.source = description.source;
   sheet.mechanism_type = family_name(description.mechanism);
   sheet.active_joints = mechanism.active_count();
-  sheet.tool_freedoms = mechanism.tool_rows();
+  sheet.tool_freedoms = freedoms_of(mechanism);
   sheet.joint_names = mechanism.active_names();
   for (int j = 0; j < mechanism.active_count(); ++j) {
     sheet.joint_ranges.push_back(mechanism.active_range(j));

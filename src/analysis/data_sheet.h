@@ -142,7 +142,7 @@ struct DataSheet {
   std::string source;
   std::string mechanism_type;  ///< "delta", "legs"
   int active_joints = 0;
-  int tool_freedoms = 0;                 ///< 2, 3 or 6
+  int tool_freedoms = 0;                 ///< of the tool's components, those that it can be moved along
   std::vector<std::string> joint_names;  ///< of the active joints
   std::vector<Interval> joint_ranges;    ///< [rad] or [m]
   std::vector<bool> joint_slides;        ///< whether each of them is prismatic

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -133,6 +134,14 @@ Jacobian JacobianScale::homogeneous_rows(const Jacobian& rows) const {
 
 namespace {
 
+// Over as many singular values as there are freedoms.
+double condition_over_freedoms(const Jacobian& jacobian) {
+  constexpr double kRounding = 1e-13;
+  const SmallVector sigma = svd(jacobian).sigma;
+  const double least = sigma[sigma.size() - 1];
+  return least > kRounding * sigma[0] ? sigma[0] / least : std::numeric_limits<double>::infinity();
+}
+
 // Active joints of sample `index`, the joints that the hand moves at home.
 ActiveVector driven_posture(const Mechanism& mechanism, std::int64_t index) {
   std::vector<int> driven;
@@ -157,6 +166,14 @@ ActiveVector driven_posture(const Mechanism& mechanism, std::int64_t index) {
 }
 
 }  // namespace
+
+double JacobianScale::condition_number(const Jacobian& tool) const {
+  return condition_over_freedoms(homogeneous(tool));
+}
+
+double JacobianScale::rows_condition_number(const Jacobian& rows) const {
+  return condition_over_freedoms(homogeneous_rows(rows));
+}
 
 JacobianScale jacobian_scale(const Mechanism& mechanism) {
   JacobianScale scale{.units = jacobian_units(mechanism)};

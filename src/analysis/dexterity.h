@@ -58,8 +58,11 @@ struct JacobianScale {
   /// The homogeneous Jacobian in a basis of the motions that the tool has: square, with the same singular
   /// values, where there are fewer joints than rows, and as it is elsewhere.
   Jacobian motions(const Jacobian& tool) const;
-  /// Largest over smallest singular value of these; infinity if it is singular.
-  double condition_number(const Jacobian& tool) const { return dexterity(motions(tool)).condition_number; }
+  /// Largest over smallest singular value of the homogeneous Jacobian, of a tool with fewer freedoms than rows
+  /// over those that it has; infinity if it is singular.
+  double condition_number(const Jacobian& tool) const;
+  /// Of linear rows alone, or of angular rows alone.
+  double rows_condition_number(const Jacobian& rows) const;
 };
 /// The length with the largest mean of 1/(condition number) over postures spread evenly over the ranges of the
 /// driven joints, those that the hand moves at home (Angeles 2002). Takes some milliseconds if the units are

@@ -13,6 +13,7 @@
 #include "zwidth/analysis/internal/parallel.h"
 #include "zwidth/analysis/internal/pose_flood.h"
 #include "zwidth/analysis/internal/pose_guide.h"
+#include "zwidth/analysis/internal/quantiles.h"
 #include "zwidth/analysis/internal/region.h"
 #include "zwidth/analysis/internal/trace.h"
 
@@ -104,9 +105,7 @@ class Figures {
     if (options_.torque) fill_loads(rates.tool, options_.torque(posture), values);
     const Jacobian J = guide_.rows(rates.tool);
     const Eigen::Index linear = scale_.units.linear_rows, angular = J.rows() - linear;
-    const auto figure = [this](const Jacobian& part) {
-      return 1.0 / dexterity(scale_.homogeneous_rows(part)).condition_number;
-    };
+    const auto figure = [this](const Jacobian& part) { return 1.0 / scale_.rows_condition_number(part); };
     values[translation] = linear > 0 ? figure(J.topRows(linear)) : kNone;
     values[rotation] = angular > 1 ? figure(J.bottomRows(angular)) : kNone;
     values[homogeneous] = linear > 0 && angular > 0 ? 1.0 / scale_.condition_number(J) : values[translation];
@@ -114,17 +113,17 @@ class Figures {
 
  private:
   void fill_loads(const Jacobian& tool, const TorqueRange& range, std::span<double> values) const {
-    const Mechanism& mechanism = guide_.mechanism();
-    const Eigen::Index linear = mechanism.linear_rows(), angular = tool.rows() - linear;
-    const auto fill_kind = [&](const Jacobian& rows, Eigen::Index first, int along, int weakest) {
+    const Jacobian J = guide_.rows(tool);
+    const auto linear = static_cast<Eigen::Index>(guide_.moves().size()), angular = J.rows() - linear;
+    const auto fill_kind = [&](const Jacobian& rows, const std::vector<int>& axes, int along, int weakest) {
       for (Eigen::Index r = 0; r < rows.rows(); ++r) {
-        const int axis = mechanism.tool_axes()[static_cast<std::size_t>(first + r)] % 3;
+        const int axis = axes[static_cast<std::size_t>(r)] % 3;
         values[static_cast<std::size_t>(along + axis)] = internal::axis_load(rows, range, r);
       }
       values[static_cast<std::size_t>(weakest)] = internal::weakest_load(rows, range);
     };
-    if (linear > 0) fill_kind(tool.topRows(linear), 0, force, weakest_force);
-    if (angular > 0) fill_kind(tool.bottomRows(angular), linear, moment, weakest_moment);
+    if (linear > 0) fill_kind(J.topRows(linear), guide_.moves(), force, weakest_force);
+    if (angular > 0) fill_kind(J.bottomRows(angular), guide_.turns(), moment, weakest_moment);
   }
 
   const PoseGuide& guide_;
@@ -136,10 +135,15 @@ Statistic statistic_of(const PoseChart& chart, const PoseFlood& flood, const std
                        int figure) {
   internal::StatisticBuilder builder;
   const std::vector<double>& values = flood.values[static_cast<std::size_t>(figure)];
+  std::vector<double> known;
   for (const std::size_t p : order) {
-    if (!std::isnan(values[p])) builder.add(values[p], chart.at(flood.coordinates(flood.points[p])).position);
+    if (std::isnan(values[p])) continue;
+    builder.add(values[p], chart.at(flood.coordinates(flood.points[p])).position);
+    known.push_back(values[p]);
   }
-  return builder.result();
+  Statistic statistic = builder.result();
+  internal::put_quantiles(known, statistic);
+  return statistic;
 }
 
 PoseConditioning conditioning_of(const PoseChart& chart, const PoseFlood& flood,
@@ -154,8 +158,19 @@ PoseConditioning conditioning_of(const PoseChart& chart, const PoseFlood& flood,
   return result;
 }
 
-// ---------------------------------------------------------------------------------------------------- its
-// shape
+// Forces and moments over the points of a flood.
+void put_loads(const PoseChart& chart, const PoseFlood& flood, const std::vector<std::size_t>& order,
+               const PoseWorkspaceOptions& options, PoseWorkspace& workspace) {
+  if (!options.torque) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    workspace.force[k] = statistic_of(chart, flood, order, Figures::force + static_cast<int>(k));
+    workspace.moment[k] = statistic_of(chart, flood, order, Figures::moment + static_cast<int>(k));
+  }
+  workspace.weakest_force = statistic_of(chart, flood, order, Figures::weakest_force);
+  workspace.weakest_moment = statistic_of(chart, flood, order, Figures::weakest_moment);
+}
+
+// ---------------------------------------------------------------------------------------------- its shape
 
 // The places of one orientation, in the coordinates of a chart.
 class PoseRegion : public internal::Region {
@@ -360,14 +375,21 @@ void turn_round(const PoseGuide& guide, const Posture& seed, TurningRange& turni
     turning.share = turning.about[guide.turns().front() - 3]->width() / (2.0 * pi);
     turning.share_error = 1e-9 / pi;
   }
-  if (guide.turns().size() != 3) return;
+  if (guide.turns().size() < 2) return;
   const PoseChart chart{.origin = origin, .axes = guide.turns()};
   const Look first = look(guide, chart, seed, Vector3::Zero(), 0.1, pi, effort);
   constexpr double kOrientations = 15'000.0;
   const PoseFlood flood = flood_poses(
       guide, chart, seed, Vector3::Zero(),
       {.spacing = fitting_spacing(first.flood, kOrientations), .most = kMostPlaces, .most_radius = pi}, effort);
-  const internal::FloodMeasure share = internal::measure(flood, internal::orientation_density);
+  // Of a tool that turns in two ways the directions of the axis that is left, of the sphere.
+  const auto directions = [](const Vector3& turn) {
+    const double angle = turn.norm();
+    return (angle < 1e-4 ? 1.0 : std::sin(angle) / angle) / (4.0 * pi);
+  };
+  const internal::FloodMeasure share = guide.turns().size() == 2
+                                           ? internal::measure(flood, directions)
+                                           : internal::measure(flood, internal::orientation_density);
   turning.share = share.value;
   turning.share_error = share.error_estimate;
 }
@@ -498,8 +520,29 @@ PoseWorkspace pose_workspace(const Mechanism& mechanism, const PoseWorkspaceOpti
     workspace.turning.reached = there.inside;
     if (there.inside) turn_round(guide, *there.posture, workspace.turning, quiet);
   };
+  const Figures figures(guide, options);
+  workspace.characteristic_length = figures.length();
   if (workspace.dimension() == 0) {
     turn();
+    const PoseChart turns{.origin = seed->tool(), .axes = guide.turns()};
+    const Look first = look(guide, turns, *seed, Vector3::Zero(), 0.1, pi, quiet);
+    if (first.flood.points.empty()) return workspace;
+    constexpr double kOrientations = 3000.0;
+    const PoseFlood flood =
+        flood_poses(guide, turns, *seed, Vector3::Zero(),
+                    {.spacing = fitting_spacing(first.flood, kOrientations),
+                     .most = kMostPlaces,
+                     .exits = false,
+                     .most_radius = pi,
+                     .figures = Figures::count,
+                     .figure = [&](const Posture& posture, const Rates& rates,
+                                   std::span<double> row) { figures.fill(posture, rates, row); }},
+                    quiet);
+    workspace.complete = flood.complete;
+    std::vector<std::size_t> all(flood.points.size());
+    for (std::size_t p = 0; p < all.size(); ++p) all[p] = p;
+    workspace.rotation = conditioning_of(turns, flood, all, Figures::rotation);
+    put_loads(turns, flood, all, options, workspace);
     return workspace;
   }
 
@@ -517,8 +560,6 @@ PoseWorkspace pose_workspace(const Mechanism& mechanism, const PoseWorkspaceOpti
   if (expected > static_cast<double>(kMostPlaces))
     throw std::length_error("a lattice this fine has more than two million points in the workspace");
 
-  const Figures figures(guide, options);
-  workspace.characteristic_length = figures.length();
   const PoseFlood flood =
       flood_poses(guide, chart, *seed, from,
                   {.spacing = workspace.spacing,
@@ -542,12 +583,7 @@ PoseWorkspace pose_workspace(const Mechanism& mechanism, const PoseWorkspaceOpti
   workspace.translation = conditioning_of(chart, flood, order, Figures::translation);
   workspace.rotation = conditioning_of(chart, flood, order, Figures::rotation);
   workspace.homogeneous = conditioning_of(chart, flood, order, Figures::homogeneous);
-  for (std::size_t k = 0; k < 3 && options.torque; ++k) {
-    workspace.force[k] = statistic_of(chart, flood, order, Figures::force + static_cast<int>(k));
-    workspace.moment[k] = statistic_of(chart, flood, order, Figures::moment + static_cast<int>(k));
-  }
-  workspace.weakest_force = statistic_of(chart, flood, order, Figures::weakest_force);
-  workspace.weakest_moment = statistic_of(chart, flood, order, Figures::weakest_moment);
+  put_loads(chart, flood, order, options, workspace);
   const internal::FloodMeasure measure = internal::measure(flood);
   workspace.measure = measure.value;
   workspace.error_estimate = measure.error_estimate;

@@ -140,11 +140,11 @@ class Sweeper {
     const Jacobian linear = rate.tool.topRows(linear_);
     const Jacobian angular = rate.tool.bottomRows(rate.tool.rows() - linear_);
     if (linear_ > 0) {
-      values[translation_conditioning] = 1.0 / dexterity(scale_.homogeneous_rows(linear)).condition_number;
+      values[translation_conditioning] = 1.0 / scale_.rows_condition_number(linear);
       values[manipulability] = dexterity(linear).manipulability;
     }
     if (angular.rows() > 0)
-      values[rotation_conditioning] = 1.0 / dexterity(scale_.homogeneous_rows(angular)).condition_number;
+      values[rotation_conditioning] = 1.0 / scale_.rows_condition_number(angular);
     if (options_.torque) loads(options_.torque(posture), linear, angular, values);
     if (options_.joint_step.size() > 0) steps(rate.tool, values);
     if (!mechanism_.bodies().empty())

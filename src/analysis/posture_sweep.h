@@ -25,7 +25,8 @@ struct PostureStatistic {
   ActiveVector min_at;  ///< active joints of the minimum [rad] or [m]
   ActiveVector max_at;
   bool unbounded = false;  ///< the figure grows without end towards a singular posture: `max` is what was found
-  std::optional<double> median, percentile_95;  ///< where asked for: half of them, and 95 of 100, stay below
+  // Where asked for: half of them stay below the median, 5 of 100 and 95 of 100 below the percentiles.
+  std::optional<double> median, percentile_5, percentile_95;
 };
 
 struct PostureSweepOptions {

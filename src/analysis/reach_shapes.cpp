@@ -4,11 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <vector>
 
 #include "zwidth/analysis/internal/parallel.h"
 #include "zwidth/analysis/internal/trace.h"
 #include "zwidth/analysis/posture_sweep.h"
 #include "zwidth/mechanism/jacobian.h"
+#include "zwidth/mechanism/point_reach.h"
 
 namespace zwidth {
 namespace {
@@ -212,6 +215,50 @@ void fill_gaps(PlaneGrid& grid, const std::vector<char>& wanted) {
   }
 }
 
+// The same where every point can be decided exactly: on a finer lattice, its outlines found by bisection.
+Slice exact_cut(const PointReach& reach, const ReachMap& map, const Layer& layer, double at) {
+  constexpr std::int64_t kPoints = 200;  // along the longer side
+  Slice slice{.axis = layer.axis, .at = at, .u = layer.u, .v = layer.v};
+  const std::int64_t longest = std::max(map.count[layer.u], map.count[layer.v]);
+  const auto fine = static_cast<int>(std::max<std::int64_t>(1, (kPoints + longest - 1) / longest));
+  const double h = map.spacing / fine;
+  const auto start = [&](int axis) { return map.spacing * static_cast<double>(map.first[axis] - 1) + 0.5 * h; };
+  const int nu = static_cast<int>(map.count[layer.u] + 2) * fine,
+            nv = static_cast<int>(map.count[layer.v] + 2) * fine;
+  const auto place = [&](double iu, double iv) {
+    Vector3 point;
+    point[layer.axis] = at;
+    point[layer.u] = start(layer.u) + h * iu;
+    point[layer.v] = start(layer.v) + h * iv;
+    return point;
+  };
+  std::vector<char> inside(static_cast<std::size_t>(nu) * static_cast<std::size_t>(nv));
+  for (int iv = 1; iv + 1 < nv; ++iv) {
+    for (int iu = 1; iu + 1 < nu; ++iu)
+      inside[static_cast<std::size_t>(iv) * static_cast<std::size_t>(nu) + static_cast<std::size_t>(iu)] =
+          reach.contains(place(iu, iv)) ? 1 : 0;
+  }
+  const auto is_inside = [&](int iu, int iv) {
+    return inside[static_cast<std::size_t>(iv) * static_cast<std::size_t>(nu) + static_cast<std::size_t>(iu)] !=
+           0;
+  };
+  const auto crossing = [&](const internal::GridLine& line) -> std::array<double, 2> {
+    const Vector3 low = place(line.iu, line.iv),
+                  high = place(line.iu + (line.up ? 0 : 1), line.iv + (line.up ? 1 : 0));
+    const bool from_low = is_inside(line.iu, line.iv);
+    Vector3 in = from_low ? low : high, out = from_low ? high : low;
+    for (int halving = 0; halving < 20; ++halving) {
+      const Vector3 middle = 0.5 * (in + out);
+      (reach.contains(middle) ? in : out) = middle;
+    }
+    return {in[layer.u], in[layer.v]};
+  };
+  slice.outlines = internal::trace_outlines(
+      nu, nv, is_inside, [&](int iu, int iv) { return reach.contains(place(iu + 0.5, iv + 0.5)); }, crossing);
+  slice.area = internal::enclosed_area(slice.outlines);
+  return slice;
+}
+
 }  // namespace
 
 InscribedShapes inscribed_shapes(const ReachMap& map) {
@@ -224,13 +271,14 @@ std::array<ReachSlice, 3> slice_reach(const Mechanism& mechanism, const ReachMap
   std::array<Layer, 3> layers;
   std::array<std::vector<char>, 3> wanted;
   const Grid grid{map.count};
+  const std::optional<PointReach> exact = PointReach::of(mechanism);
   for (int axis = 0; axis < 3; ++axis) {
     Layer& layer = layers[axis];
     layer = {.axis = axis, .u = axis == 0 ? 1 : 0, .v = axis == 2 ? 1 : 2};
     layer.index =
         std::clamp(static_cast<std::int64_t>(std::floor(through[axis] / map.spacing)) - map.first[axis],
                    std::int64_t{0}, std::max<std::int64_t>(0, map.count[axis] - 1));
-    slices[axis].slice = cut(map, layer, through[axis]);
+    slices[axis].slice = exact ? exact_cut(*exact, map, layer, through[axis]) : cut(map, layer, through[axis]);
     PlaneGrid& plane = slices[axis].conditioning;
     plane.nu = static_cast<int>(map.count[layer.u]);
     plane.nv = static_cast<int>(map.count[layer.v]);
@@ -271,7 +319,7 @@ std::array<ReachSlice, 3> slice_reach(const Mechanism& mechanism, const ReachMap
         if (iu < 0 || iv < 0 || iu >= map.count[layer.u] || iv >= map.count[layer.v]) continue;
         if (conditioning < 0.0) {
           const Jacobian linear = jacobian(*solution.posture).topRows(mechanism.linear_rows());
-          conditioning = 1.0 / dexterity(scale.homogeneous_rows(linear)).condition_number;
+          conditioning = 1.0 / scale.rows_condition_number(linear);
         }
         hits[b].push_back({layer.axis, static_cast<std::size_t>(iv * map.count[layer.u] + iu), conditioning});
       }

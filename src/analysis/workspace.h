@@ -42,7 +42,8 @@ struct Statistic {
   Vector3 min_at = Vector3::Zero();  ///< tool position of the minimum [m]
   Vector3 max_at = Vector3::Zero();  ///< [m]
   bool unbounded = false;  ///< the figure grows without end towards a singular posture: `max` is what was found
-  std::optional<double> median, percentile_95;  ///< where asked for: half of them, and 95 of 100, stay below
+  // Where asked for: half of them stay below the median, 5 of 100 and 95 of 100 below the percentiles.
+  std::optional<double> median, percentile_5, percentile_95;
 };
 
 struct Extents;

@@ -12,21 +12,14 @@
 namespace zwidth::internal {
 namespace {
 
-double condition_of(const Jacobian& rows) {
-  return finite_or_undefined(dexterity(rows).condition_number);
-}
-
-// Of a tool that also turns, its translations and rotations alone, joints that slide comparable with those that
-// turn.
+// The rows of the tool's translations, and of its rotations alone.
 std::optional<Jacobian> translation(PostureFigures& at) {
-  const Mechanism& mechanism = at.mechanism();
-  if (mechanism.linear_rows() == 0) return std::nullopt;
-  return at.device().scale().homogeneous_rows(at.linear_rows());
+  if (at.mechanism().linear_rows() == 0) return std::nullopt;
+  return at.linear_rows();
 }
 std::optional<Jacobian> rotation(PostureFigures& at) {
-  const Mechanism& mechanism = at.mechanism();
-  if (!mechanism.tool_turns()) return std::nullopt;
-  return at.device().scale().homogeneous_rows(at.angular_rows());
+  if (!at.mechanism().tool_turns()) return std::nullopt;
+  return at.angular_rows();
 }
 
 // How far the nearest leg is from stretched or folded, and the platform from being free; 0 at the singularity.
@@ -187,7 +180,7 @@ FigureTable tool_figures() {
          .answers = {{"at homogeneous." + name + ".condition_number"}},
          .of = [rows](PostureFigures& at, const FigureOptions&) {
            const std::optional<Jacobian> J = rows(at);
-           return J ? condition_of(*J) : kUndefined;
+           return J ? finite_or_undefined(at.device().scale().rows_condition_number(*J)) : kUndefined;
          }});
     add({.name = name + "_inverse_condition",
          .unit = "1",
@@ -197,7 +190,7 @@ FigureTable tool_figures() {
                      {"report workspace.conditioning." + name}},
          .of = [rows](PostureFigures& at, const FigureOptions&) {
            const std::optional<Jacobian> J = rows(at);
-           return J ? 1.0 / dexterity(*J).condition_number : kUndefined;
+           return J ? 1.0 / at.device().scale().rows_condition_number(*J) : kUndefined;
          }});
     add({.name = name + "_isotropy",
          .unit = "1",
@@ -205,7 +198,7 @@ FigureTable tool_figures() {
          .answers = {{"at homogeneous." + name + ".isotropy"}},
          .of = [rows](PostureFigures& at, const FigureOptions&) {
            const std::optional<Jacobian> J = rows(at);
-           return J ? isotropy(*J) : kUndefined;
+           return J ? isotropy(at.device().scale().homogeneous_rows(*J)) : kUndefined;
          }});
   }
   add({.name = "manipulability",

@@ -1,5 +1,6 @@
 #include "zwidth/analysis/dexterity.h"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -107,6 +108,25 @@ TEST(JacobianScale, OfAMapIsThatOfEveryPosture) {
   std::get<SerialDescription>(arm.mechanism).platform = PlatformFreedom::point;
   agrees(arm);
   EXPECT_GE(mixed, 2);
+}
+
+TEST(JacobianScale, ToolsWithFewFreedomsAreJudgedByThose) {
+  // A SCARA: three translations and a turn of six components.
+  Description arm =
+      test::arm_description({test::turning("one", 0.3, 0.2, 0.0, {-90.0, 90.0}),
+                             test::turning("two", 0.0, 0.15, 0.0, {20.0, 120.0}),
+                             {.name = "lift", .type = SerialJointType::prismatic, .range = {-0.1, 0.0}},
+                             test::turning("twist", 0.0, 0.0, 0.0, {-150.0, 150.0})});
+  const Mechanism mechanism(arm);
+  const JacobianScale scale = jacobian_scale(mechanism);
+  const Solution solution = solve_forward(mechanism, Eigen::Vector4d(0.2, 1.0, -0.05, 0.3));
+  const Jacobian J = jacobian(*solution.posture);
+  ASSERT_EQ(J.rows(), 6);
+  const Eigen::VectorXd sigma =
+      Eigen::JacobiSVD<Eigen::MatrixXd>(Eigen::MatrixXd(scale.homogeneous(J))).singularValues();
+  EXPECT_NEAR(scale.condition_number(J) / (sigma[0] / sigma[3]), 1.0, 1e-9);
+  EXPECT_TRUE(std::isinf(scale.rows_condition_number(J.bottomRows(3))));
+  EXPECT_LT(scale.rows_condition_number(J.topRows(3)), 100.0);
 }
 
 TEST(JacobianScale, GrowsWithTheDevice) {

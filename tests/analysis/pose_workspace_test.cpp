@@ -297,6 +297,35 @@ TEST(PoseWorkspace, EveryPlaceInAnyOrientationIsOneOfTheHexapods) {
   EXPECT_GT(workspace.any->turned[0].measure, 0.0);
 }
 
+// A tool of three freedoms among six components: the others come as they do.
+TEST(PoseWorkspace, OfATripodThatHeavesAndTilts) {
+  const test::ThreeRps design;
+  const Mechanism mechanism(design.description());
+  ASSERT_FALSE(pose_workspace_obstacle(mechanism));
+  const ActiveVector limit = Vector3::Constant(10.0);
+  const PoseWorkspace workspace =
+      pose_workspace(mechanism, {.torque = [&](const Posture&) { return TorqueRange::symmetric(limit); }});
+  ASSERT_TRUE(workspace.reached);
+  EXPECT_EQ(workspace.axes, (std::vector<int>{2}));
+  EXPECT_NEAR(workspace.range[2].min, design.height_at(-design.stroke), 1e-5);
+  EXPECT_NEAR(workspace.range[2].max, design.height_at(design.stroke), 1e-5);
+  EXPECT_NEAR(workspace.measure, workspace.range[2].width(), 1e-4);
+  for (const int axis : {0, 1}) {
+    ASSERT_TRUE(workspace.turning.about[axis]);
+    // The balls sit 80 mm and 69 mm from the axes, and each leg has 30 mm either way.
+    EXPECT_GT(workspace.turning.about[axis]->max, 0.3);
+    EXPECT_LT(workspace.turning.about[axis]->min, -0.3);
+  }
+  EXPECT_FALSE(workspace.turning.about[2]);
+  ASSERT_TRUE(workspace.turning.share);  // of the directions of its axis
+  EXPECT_GT(*workspace.turning.share, 0.01);
+  // Upwards the three legs push together.
+  EXPECT_EQ(workspace.force[0].count, 0);
+  const double slope = design.height / std::hypot(design.base_radius - design.plate_radius, design.height);
+  EXPECT_GT(workspace.force[2].max, 30.0 * slope);
+  EXPECT_LT(workspace.force[2].min, 30.0 * slope);
+}
+
 TEST(PoseWorkspace, ForcesAreThoseOfTheJacobianThere) {
   const Mechanism mechanism(ThreeRrr{}.description());
   const ActiveVector limit = Vector3(0.2, 0.3, 0.4);

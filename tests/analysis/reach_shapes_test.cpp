@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
+#include "support/small_arms.h"
+
 #include "zwidth/analysis/dexterity.h"
 #include "zwidth/mechanism/jacobian.h"
+#include "zwidth/mechanism/point_reach.h"
 
 namespace zwidth {
 namespace {
@@ -94,12 +97,51 @@ TEST(ReachShapes, ACutHasTheAreaOfTheRegionAndItsBestConditioning) {
       const double shoulder = std::atan2(y, x) - std::atan2(0.2 * std::sin(elbow), 0.3 + 0.2 * std::cos(elbow));
       const Solution solution = solve_forward(mechanism, Vector3(0.1, shoulder, elbow));
       const Jacobian rows = jacobian(*solution.posture).topRows(3);
-      const double expected = 1.0 / dexterity(scale.homogeneous_rows(rows)).condition_number;
+      const double expected = 1.0 / scale.rows_condition_number(rows);
       EXPECT_NEAR(grid.at(iu, iv), expected, 0.02);  // over a cube and its neighbours in height
       ++compared;
     }
   }
   EXPECT_GT(compared, 15);
+}
+
+TEST(ReachShapes, CutsOfAnArmInClosedFormFollowItsBoundary) {
+  const Mechanism mechanism(test::seven_joint_arm(0.25, 0.2));
+  const std::optional<PointReach> reach = PointReach::of(mechanism);
+  ASSERT_TRUE(reach);
+  const ReachMap map = reach_map(mechanism, {.spacing = 0.02});
+  const Vector3 through(0.2, 0.05, -0.1);
+  for (const ReachSlice& cut : slice_reach(mechanism, map, through, 2'000)) {
+    ASSERT_FALSE(cut.slice.outlines.empty());
+    double inside = 0.0;
+    constexpr double h = 2e-3;
+    for (double u = -0.5; u < 0.5; u += h) {
+      for (double v = -0.5; v < 0.5; v += h) {
+        Vector3 point = through;
+        point[cut.slice.u] = u;
+        point[cut.slice.v] = v;
+        inside += reach->contains(point) ? h * h : 0.0;
+      }
+    }
+    EXPECT_NEAR(cut.slice.area, inside, 0.01 * inside);
+    // Every point of an outline is inside, and next to points that are not.
+    for (const Outline& outline : cut.slice.outlines) {
+      for (std::size_t p = 0; p < outline.size(); p += 29) {
+        Vector3 point = through;
+        point[cut.slice.u] = outline[p][0];
+        point[cut.slice.v] = outline[p][1];
+        EXPECT_TRUE(reach->contains(point));
+        bool beside = false;
+        for (const auto& [u, v] : {std::pair{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {
+          Vector3 other = point;
+          other[cut.slice.u] += 1e-7 * u;
+          other[cut.slice.v] += 1e-7 * v;
+          beside = beside || !reach->contains(other);
+        }
+        EXPECT_TRUE(beside);
+      }
+    }
+  }
 }
 
 }  // namespace

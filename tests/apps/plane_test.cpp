@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <gtest/gtest.h>
 
 #include "run_command.h"
@@ -54,6 +55,27 @@ TEST(Plane, FigureAndReport) {
   for (const char* id :
        {"device", "workspace-plane", "singularities", "condition-classes", "conditioning", "ellipses"})
     EXPECT_NE(page.find("id=\"" + std::string(id) + "\""), std::string::npos) << id;
+}
+
+TEST(Workspace, AFigureOfWhatIsNotKnownIsRefused) {
+  const ScratchDirectory scratch;
+  const std::string svg = (scratch.path() / "plane.svg").string();
+  const Outcome outcome = run({"workspace", "five-bar", "--grid", "10mm", "--figure", svg, "--of", "softest"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("neither sections of the links"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("known are condition_number"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(svg));
+  ASSERT_EQ(run({"workspace", "five-bar", "--grid", "10mm", "--figure", svg, "--of", "heaviest"}).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(svg));
+}
+
+TEST(Workspace, TakesALatticeThatSuitsTheDevice) {
+  const auto grid = [](const char* device) {
+    return run({"workspace", device, "--json"}).json()["grid"].get<double>();
+  };
+  EXPECT_DOUBLE_EQ(grid("five-bar"), 1e-3);
+  EXPECT_DOUBLE_EQ(grid("delta"), 1e-3);
+  EXPECT_DOUBLE_EQ(grid("pneumatic-1"), 5e-3);
 }
 
 TEST(Against, SaysWhatBothReachAndWhatOnlyOne) {

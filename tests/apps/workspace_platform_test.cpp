@@ -46,6 +46,41 @@ TEST(WorkspacePlatform, OfAPlateHasAnAreaInAnyOrientationAsked) {
   EXPECT_NE(text.out.find("±"), std::string::npos) << text.out;
 }
 
+TEST(WorkspacePlatform, SaysForcesAndWhatAnyOrientationGives) {
+  const Json document = run({"workspace", kPlane, "--grid", "4mm", "--json"}).json();
+  const Json& forces = document["forces"];
+  EXPECT_GT(forces["force_every_direction"]["median"].get<double>(), 1.0);
+  EXPECT_LE(forces["force_every_direction"]["percentile_5"], forces["force_every_direction"]["median"]);
+  EXPECT_TRUE(forces["force"]["z"].is_null());
+  EXPECT_GT(forces["moment"]["z"]["median"].get<double>(), 0.1);
+  const Json& any = document["any_orientation"];
+  EXPECT_GT(any["area"].get<double>(), document["area"].get<double>());
+  EXPECT_GT(any["share"]["mean"].get<double>(), 0.05);
+  EXPECT_EQ(any["turned_every_way"].size(), 4u);
+  const Outcome text = run({"workspace", kPlane, "--grid", "4mm"});
+  for (const char* wanted : {"Forces, continuous", "In any orientation", "every way in"})
+    EXPECT_NE(text.out.find(wanted), std::string::npos) << wanted;
+  // Without drives there are no forces.
+  EXPECT_TRUE(run({"workspace", kHexapod, "--grid", "20mm", "--json"}).json()["forces"].is_null());
+}
+
+TEST(WorkspacePlatform, IsComparedWithOthersThatMoveAlongTheSameAxes) {
+  const Json planes = run({"workspace", kPlane, "--against", "five-bar", "--grid", "4mm", "--json"}).json();
+  EXPECT_EQ(planes["measure"], "area");
+  const auto value = [&](const char* key) { return planes[key]["value"].get<double>(); };
+  EXPECT_NEAR(value("both") + value("only_first"), value("first"), 1e-12);
+  EXPECT_GT(value("second"), 0.0);
+  const Json upright =
+      run({"workspace", kHexapod, "--against", "delta", "--grid", "15mm", "--orientation", "0,0,0", "--json"})
+          .json();
+  EXPECT_EQ(upright["measure"], "volume");
+  // 904.5 cm^3, see above.
+  EXPECT_NEAR(upright["first"]["value"].get<double>(), 9.045e-4, 0.05 * 9.045e-4);
+  const Outcome mixed = run({"workspace", kHexapod, "--against", "five-bar"});
+  EXPECT_EQ(mixed.status, 2);
+  EXPECT_NE(mixed.err.find("same axes"), std::string::npos) << mixed.err;
+}
+
 TEST(WorkspacePlatform, SaysWhatCannotBe) {
   const Outcome tilted = run({"workspace", kHexapod, "--orientation", "0,80deg,0", "--json"});
   EXPECT_EQ(tilted.status, 1);

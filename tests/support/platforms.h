@@ -57,6 +57,45 @@ struct Hexapod {
   }
 };
 
+/// Three legs of a hinge, a driven slide and a ball joint each under one plate: it heaves, tilts two ways, and
+/// drifts sideways as it tilts. All joints are zero with the plate at (0, 0, height), not turned.
+struct ThreeRps {
+  double base_radius = 0.12, plate_radius = 0.08, height = 0.15;
+  double stroke = 0.03;  ///< of each leg, either way [m]
+
+  /// Height of the plate, not turned, with every leg longer by `extension`.
+  double height_at(double extension) const {
+    const double across = base_radius - plate_radius;
+    return std::sqrt(std::pow(std::hypot(across, height) + extension, 2) - across * across);
+  }
+  Description description() const {
+    LegsDescription legs;
+    legs.platform = PlatformFreedom::rigid;
+    for (int arm = 0; arm < 3; ++arm) {
+      const double angle = 1.5707963267948966 + 2.0943951023931953 * arm;
+      const Vector3 out(std::cos(angle), std::sin(angle), 0.0), aside(-out.y(), out.x(), 0.0);
+      const std::string n = std::to_string(arm + 1);
+      LegDescription leg{.name = "leg" + n};
+      leg.platform_point = plate_radius * out;
+      leg.tip = leg.platform_point + Vector3(0.0, 0.0, height);
+      leg.attachment = Attachment::spherical;
+      const Vector3 foot = base_radius * out;
+      leg.joints.push_back({.name = "hinge" + n, .axis = aside, .point = foot});
+      leg.joints.push_back({.name = "push" + n,
+                            .type = JointType::prismatic,
+                            .active = true,
+                            .axis = (leg.tip - foot).normalized(),
+                            .point = foot,
+                            .range = {-stroke, stroke}});
+      legs.legs.push_back(leg);
+    }
+    Description description;
+    description.name = "three-rps";
+    description.mechanism = legs;
+    return description;
+  }
+};
+
 inline Hexapod hexapod(double base_radius = 0.15, double plate_radius = 0.06, double height = 0.2,
                        double stroke = 0.04) {
   Hexapod result{.height = height, .stroke = stroke};

@@ -56,17 +56,18 @@ void write_mixed(const Situation& at, const Moving& moving, Answer& answer) {
   }
   // In the base frame, as maps and data sheets have it.
   const JacobianScale scale = jacobian_scale(at.mechanism);
-  const double condition = scale.condition_number(at.rates.tool);
-  answer.put("condition_number", json_number(condition));
+  const double all = scale.condition_number(at.rates.tool);
+  answer.put("condition_number", json_number(all));
   Json entry;
   entry["length"] = json_number(scale.length);
-  entry["condition_number"] = json_number(condition);
+  entry["condition_number"] = json_number(all);
   entry["isotropy"] = json_number(isotropy(scale.motions(at.rates.tool)));
   const auto of_one_kind = [&](const char* key, const Jacobian& rows) {
-    const Dexterity figures = dexterity(scale.homogeneous_rows(rows));
-    entry[key] = {{"condition_number", json_number(figures.condition_number)},
+    const double condition = scale.rows_condition_number(rows);
+    entry[key] = {{"condition_number", json_number(condition)},
                   {"isotropy", json_number(isotropy(scale.homogeneous_rows(rows)))}};
-    if (shown) answer.cell(fmt::format("condition number, {}", key), figures.condition_number, "1 is best");
+    if (shown && std::isfinite(condition))
+      answer.cell(fmt::format("condition number, {}", key), condition, "1 is best");
   };
   const auto& [J, units] = moving;
   const int linear = units.linear_rows;
@@ -77,7 +78,7 @@ void write_mixed(const Situation& at, const Moving& moving, Answer& answer) {
   }
   answer.put("homogeneous", entry);
   if (shown)
-    answer.cell(both ? "condition number, both" : "condition number", condition,
+    answer.cell(both ? "condition number, both" : "condition number", all,
                 fmt::format("a radian as {} mm{}", number(scale.length * 1e3),
                             J.cols() < J.rows() ? "; of the motions that there are" : ""));
 }
@@ -109,10 +110,11 @@ void write_dexterity(const Situation& at, Answer& answer) {
     return;
   }
   const Dexterity figures = dexterity(J);
+  const double condition = jacobian_scale(at.mechanism).condition_number(at.rates.tool);
   if (at.singularity.loses) {
     answer.undefined("condition_number", "infinite: the Jacobian is singular here");
   } else {
-    answer.put("condition_number", json_number(figures.condition_number));
+    answer.put("condition_number", json_number(condition));
   }
   answer.put("isotropy", json_number(at.singularity.loses ? 0.0 : isotropy(J)));
   const double manipulability = at.singularity.loses ? 0.0 : figures.manipulability;
@@ -121,7 +123,7 @@ void write_dexterity(const Situation& at, Answer& answer) {
     if (at.singularity.loses) {
       answer.page().cells("condition number", {"infinite"}, "1 is best");
     } else {
-      answer.cell("condition number", figures.condition_number, "1 is best");
+      answer.cell("condition number", condition, "1 is best");
     }
   }
   if (!answer.wants("manipulability")) return;

@@ -1,5 +1,6 @@
 #include "zwidth/analysis/internal/pose_guide.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
@@ -19,7 +20,8 @@ Solution home_of(const Mechanism& mechanism) {
   return solve_forward(mechanism, active);
 }
 
-// Which rows of the tool can be moved alone.
+// Which rows of the tool can be moved alone; if fewer than it has freedoms, others beside them that are as
+// independent as can be.
 std::vector<int> free_rows(const Mechanism& mechanism, Jacobian J) {
   J.bottomRows(J.rows() - mechanism.linear_rows()) *= mechanism.characteristic_length();
   const double scale = J.norm();
@@ -30,6 +32,22 @@ std::vector<int> free_rows(const Mechanism& mechanism, Jacobian J) {
     const Eigen::VectorXd rate = inverse.solve(wanted);
     if (scale > 0.0 && (J * rate - wanted).norm() < kSolvable) rows.push_back(r);
   }
+  constexpr double kIndependent = 1e-6;
+  const Eigen::Index freedoms = inverse.rank();
+  Eigen::MatrixXd rest = J / std::max(scale, 1e-300);
+  const auto take = [&rest](Eigen::Index r) {
+    const Eigen::RowVectorXd unit = rest.row(r).normalized();
+    rest -= (rest * unit.transpose()) * unit;
+  };
+  for (const int row : rows) take(row);
+  while (static_cast<Eigen::Index>(rows.size()) < freedoms) {
+    Eigen::Index best = 0;
+    const double left = rest.rowwise().norm().maxCoeff(&best);
+    if (!(left > kIndependent)) break;
+    rows.push_back(static_cast<int>(best));
+    take(best);
+  }
+  std::ranges::sort(rows);
   return rows;
 }
 
@@ -92,10 +110,50 @@ double PoseGuide::handedness(const Jacobian& jacobian) const {
   return det < 0.0 ? -1.0 : det > 0.0 ? 1.0 : 0.0;
 }
 
+// Newton's method on the components that the tool has, the loops closed at every step.
+std::optional<Solution> PoseGuide::lead(const Posture& from, const Pose& to) const {
+  constexpr int kSteps = 25;
+  constexpr double kClose = 1e-11, kFar = 0.3;
+  const double length = mechanism_->characteristic_length();
+  Solution solution{.status = SolveStatus::reached};
+  solution.posture = from;
+  for (int n = 0; n < kSteps; ++n) {
+    const Posture at = *solution.posture;
+    const Eigen::AngleAxisd turn(Matrix3(to.rotation * at.tool().rotation.transpose()));
+    const Vector3 way = to.position - at.tool().position, turns = turn.angle() * turn.axis();
+    Eigen::VectorXd error(static_cast<Eigen::Index>(rows_.size()));
+    Eigen::Index k = 0;
+    double off = 0.0;
+    for (const int axis : moves_) off = std::max(off, std::abs(error[k++] = way[axis]) / length);
+    for (const int axis : turns_) off = std::max(off, std::abs(error[k++] = turns[axis - 3]));
+    if (off < kClose && n > 0) return solution;
+    const Eigen::MatrixXd J = rows(jacobian(at));
+    ActiveVector step = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(J).solve(error);
+    if (!step.allFinite()) return std::nullopt;
+    double longest = 0.0;
+    for (int j = 0; j < step.size(); ++j) {
+      const JointModel& joint = mechanism_->joints()[static_cast<std::size_t>(mechanism_->active_joint(j))];
+      longest = std::max(longest, std::abs(step[j]) / (joint.type == JointType::prismatic ? length : 1.0));
+    }
+    if (longest > kFar) step *= kFar / longest;
+    solution = solve_forward(*mechanism_, at.active() + step,
+                             {.start = &at, .restart = false, .max_iterations = kMaxIterations});
+    if (!solution) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
 PoseGuide::Step PoseGuide::step(const Posture& from, const Pose& to) const {
-  Solution solution =
-      solve_inverse(*mechanism_, to, {.start = &from, .restart = false, .max_iterations = kMaxIterations});
   Step step;
+  Solution solution;
+  if (static_cast<int>(rows_.size()) < mechanism_->tool_rows()) {
+    std::optional<Solution> led = lead(from, to);
+    if (!led) return step;
+    solution = std::move(*led);
+  } else {
+    solution =
+        solve_inverse(*mechanism_, to, {.start = &from, .restart = false, .max_iterations = kMaxIterations});
+  }
   if (!solution) return step;
   step.posture = std::move(solution.posture);
   if (solution.status == SolveStatus::joint_limit) {

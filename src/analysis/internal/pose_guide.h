@@ -35,12 +35,10 @@ class PoseGuide {
 
   const Mechanism& mechanism() const { return *mechanism_; }
   const Posture& home() const { return home_; }
-  const std::vector<int>& moves() const {
-    return moves_;
-  }  ///< axes that the tool can move along without turning
-  const std::vector<int>& turns() const {
-    return turns_;
-  }  ///< axes that it can turn about without moving (3..5)
+  /// Axes that the tool can move along without turning, and (3..5) turn about without moving; of one with fewer
+  /// freedoms than components, as many as it has freedoms, those first that it can follow alone.
+  const std::vector<int>& moves() const { return moves_; }
+  const std::vector<int>& turns() const { return turns_; }
   /// Rows of a Jacobian that mean those: moves, then turns.
   Jacobian rows(const Jacobian& jacobian) const;
 
@@ -50,7 +48,8 @@ class PoseGuide {
     std::optional<Posture> posture = std::nullopt;  ///< if reached
     Rates rates = {};                               ///< if inside
   };
-  /// The short way from a posture.
+  /// The short way from a posture. Of a tool with fewer freedoms than components, what it neither moves along nor turns
+  /// about comes as it does.
   Step step(const Posture& from, const Pose& to) const;
   /// How far the joint that is nearest to the end of its range is from it, sliding joints in characteristic
   /// lengths; below zero beyond. `nearest` is that joint, `upper` whether its upper end.
@@ -58,6 +57,7 @@ class PoseGuide {
 
  private:
   double handedness(const Jacobian& jacobian) const;
+  std::optional<Solution> lead(const Posture& from, const Pose& to) const;
 
   const Mechanism* mechanism_;
   Posture home_;

@@ -334,9 +334,14 @@ std::array<bool, kFigureCount> defined_figures(const Mechanism& mechanism, bool 
 std::optional<std::string> workspace_obstacle(const Mechanism& mechanism) {
   const int n = internal::tool_dimension(mechanism);
   if (mechanism.active_count() != n) {
-    return std::string("its workspace is worked out for ") +
-           (n == 2 ? "two active joints where the tool moves in a plane" : "three active joints only") +
-           ", and it has " + std::to_string(mechanism.active_count());
+    const std::string joints = ", and it has " + std::to_string(mechanism.active_count());
+    if (n == 2)
+      return "its workspace is worked out for two active joints where the tool moves in a plane" + joints;
+    const bool plane = mechanism.active_count() == 2 && mechanism.platform() == PlatformFreedom::translation;
+    return "its workspace is worked out for three active joints where the tool translates in space" + joints +
+           (plane
+                ? "; a tool that moves as a point in x and y is declared with platform = \"planar-translation\""
+                : "");
   }
   for (int j = 0; j < n; ++j) {
     if (!(mechanism.active_range(j).width() < 1e3)) {

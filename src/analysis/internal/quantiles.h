@@ -6,7 +6,7 @@
 
 namespace zwidth::internal {
 
-/// Puts the median and the 95th percentile of values into a statistic; reorders them. No value, none of them.
+/// Puts the median and the two percentiles of values into a statistic; reorders them. No value, none of them.
 template <class Statistic>
 void put_quantiles(std::vector<double>& values, Statistic& statistic) {
   if (values.empty()) return;
@@ -16,6 +16,7 @@ void put_quantiles(std::vector<double>& values, Statistic& statistic) {
     return values[static_cast<std::size_t>(at)];
   };
   statistic.median = quantile(0.5);
+  statistic.percentile_5 = quantile(0.05);
   statistic.percentile_95 = quantile(0.95);
 }
 

@@ -153,9 +153,16 @@ class Page : private SheetPage {
         tile(readable(2.0 * sheet_.arm->reach->inscribed.sphere.size, "m", 3),
              "diameter of the largest sphere inside");
       }
-      tile(readable(sheet_.arm->farthest.distance, "m", 3), "farthest from the base origin");
-      tile(number(sheet_.arm->continuous.translation.index(), 3),
-           "mean conditioning of translation, 1 is best");
+      const PostureSweep& sweep = sheet_.arm->continuous;
+      if (sweep.translation.weight() > 0.0) {
+        tile(readable(sheet_.arm->farthest.distance, "m", 3), "farthest from the base origin");
+        tile(number(sweep.translation.index(), 3), "mean conditioning of translation, 1 is best");
+      } else {
+        tile(number(sweep.rotation.index(), 3), "mean conditioning, 1 is best");
+        if (sweep.weakest_moment.count > 0)
+          tile(readable(sweep.weakest_moment.mean, "N m", 3),
+               "moment in every direction, continuous, mean over postures");
+      }
       if (sheet_.arm->continuous.weakest_force.count > 0)
         tile(readable(sheet_.arm->continuous.weakest_force.mean, "N", 3),
              "force in every direction, continuous, mean over postures");

@@ -14,10 +14,14 @@ void write_arm(SheetPage& page) {
   const ArmSheet& arm = *sheet.arm;
   const Mechanism mechanism(page.description());
   if (arm.pose) {
-    page.section("pose", "Workspace in one orientation");
-    page.how(
-        "Where the tool can be without turning, away from its home posture: no joint beyond its range, no "
-        "singularity passed.");
+    const bool moves = arm.pose->dimension() > 0;
+    page.section("pose", moves ? "Workspace in one orientation" : "Orientations");
+    page.how(moves ? "Where the tool can be without turning, away from its home posture: no joint beyond its "
+                     "range, no "
+                     "singularity passed."
+                   : "How the tool can be turned away from its home posture: no joint beyond its range, no "
+                     "singularity "
+                     "passed.");
     page.facts(pose_facts(*arm.pose));
     page.show_figures("pose", "three");
     if (const std::vector<ArmFact> loads = pose_load_facts(*arm.pose); !loads.empty()) {
@@ -39,9 +43,11 @@ void write_arm(SheetPage& page) {
     page.how("How far the tool turns at its home place: about one axis alone, and of all orientations.");
     page.facts(turning_facts(arm.pose->turning));
   }
-  page.section("reach", arm.pose ? "Reach of the tool point in any orientation" : "Reach of the tool point");
-  page.facts(reach_facts(arm, mechanism));
-  page.show_figures("reach", "three");
+  if (mechanism.linear_rows() > 0) {
+    page.section("reach", arm.pose ? "Reach of the tool point in any orientation" : "Reach of the tool point");
+    page.facts(reach_facts(arm, mechanism));
+    page.show_figures("reach", "three");
+  }
   if (arm.orientations) {
     page.section("orientations", "Orientations of the tool");
     page.how(

@@ -246,13 +246,15 @@ class SheetText {
       for (const ArmFact& fact : lines) text_.row(fact.name, fact.value, fact.note);
     };
     if (arm.pose) {
-      facts("Workspace in one orientation", pose_facts(*arm.pose));
+      facts(arm.pose->dimension() > 0 ? "Workspace in one orientation" : "Orientations", pose_facts(*arm.pose));
       facts("Forces in one orientation, continuous", pose_load_facts(*arm.pose));
       facts("Workspace in any orientation", any_orientation_facts(*arm.pose));
       if (arm.pose->reached) facts("Turned at home", turning_facts(arm.pose->turning));
     }
-    facts(arm.pose ? "Reach of the tool point in any orientation" : "Reach of the tool point",
-          reach_facts(arm, Mechanism(description_)));
+    if (arm.continuous.translation.weight() > 0.0) {
+      facts(arm.pose ? "Reach of the tool point in any orientation" : "Reach of the tool point",
+            reach_facts(arm, Mechanism(description_)));
+    }
     facts("Orientations of the tool", orientation_facts(arm.orientations, home_turning(arm)));
     facts("Home posture", home_facts(arm, Mechanism(description_)));
     for (const PostureTable& table : arm_tables(sheet_, Mechanism(description_))) {

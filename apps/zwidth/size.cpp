@@ -114,18 +114,22 @@ LoadDescription parsed_load(const SizeArguments& arguments, const Description& d
   if (known || !numbers) return named("--load", text, description.loads, "load");
   const auto entries = std::count(text.begin(), text.end(), ',') + 1;
   const bool in_plane = mechanism.linear_rows() == 2, turns = mechanism.tool_turns();
-  // A tool in the plane x, y takes a force there, and if it turns a moment about z: the rows that `at` takes.
+  const bool only_turns = mechanism.linear_rows() == 0;
+  // A tool in the plane x, y takes a force there, and if it turns a moment about z; one that only turns takes a
+  // moment: the rows that `at` takes.
   std::vector<int> rows{0, 1};
   if (in_plane && turns && entries == 3) rows.push_back(5);
   if (!in_plane) rows = {0, 1, 2};
   if (!in_plane && turns && entries == 6) rows = {0, 1, 2, 3, 4, 5};
+  if (only_turns) rows = {3, 4, 5};
   if (static_cast<std::size_t>(entries) != rows.size()) {
-    throw InputError(fmt::format("--load \"{}\": has {} {}; give {}", text, entries,
-                                 entries == 1 ? "entry" : "entries",
-                                 in_plane && turns ? "two (a force along x, y) or three (and a moment about z)"
-                                 : in_plane        ? "two, a force along x, y"
-                                 : turns           ? "three (a force) or six (a force and a moment)"
-                                         : "three, a force: the tool does not turn, so it takes no moment"));
+    throw InputError(
+        fmt::format("--load \"{}\": has {} {}; give {}", text, entries, entries == 1 ? "entry" : "entries",
+                    only_turns ? "three, a moment about x, y, z: the tool only turns, so it takes no force"
+                    : in_plane && turns ? "two (a force along x, y) or three (and a moment about z)"
+                    : in_plane          ? "two, a force along x, y"
+                    : turns             ? "three (a force) or six (a force and a moment)"
+                                        : "three, a force: the tool does not turn, so it takes no moment"));
   }
   std::vector<Dimension> dimensions;
   for (const int row : rows) dimensions.push_back(row < 3 ? Dimension::force : Dimension::torque);
@@ -163,6 +167,11 @@ std::string millimetres(const Vector3& at) {
   return fmt::format("{:.0f}, {:.0f}, {:.0f}", whole(at.x()), whole(at.y()), whole(at.z()));
 }
 
+/// What rounding leaves of a joint that feels nothing is nothing.
+double without_dust(double torque, double limit) {
+  return torque < 1e-12 * limit ? 0.0 : torque;
+}
+
 std::string percent(double share) {
   return std::isfinite(share) ? fmt::format("{} %", number(100.0 * share, 3)) : "–";
 }
@@ -178,7 +187,7 @@ class Answer {
     document_["device"] = model_.description.name;
     document_["where"] = where_key_;
     if (loads_.empty()) {
-      guaranteed_force();
+      guaranteed_load();
     } else {
       load_cases();
     }
@@ -276,15 +285,16 @@ class Answer {
 
   // ------------------------------------------------------------------------------- without loads
 
-  /// Largest force that can be held in every direction in every posture, on top of gravity.
-  void guaranteed_force() {
-    const int n = mechanism_.active_count();
+  /// Largest force, of a tool that only turns moment, that can be held in every direction in every posture, on
+  /// top of gravity.
+  void guaranteed_load() {
+    const int n = mechanism_.active_count(), linear = mechanism_.linear_rows();
     const ActiveVector limit = model_.continuous_torque();
     std::vector<Loading> loadings(postures_.size() * static_cast<size_t>(n));
     double force = std::numeric_limits<double>::infinity();
     for (size_t i = 0; i < postures_.size(); ++i) {
       const Rates rate_maps = rates(postures_[i].posture);
-      const Jacobian J = rate_maps.tool.topRows(mechanism_.linear_rows());
+      const Jacobian J = linear > 0 ? Jacobian(rate_maps.tool.topRows(linear)) : rate_maps.tool;
       const ActiveVector gravity = gravity_torques(postures_[i].posture, rate_maps);
       for (int j = 0; j < n; ++j) {
         const Loading loading{std::abs(gravity[j]), J.col(j).norm()};
@@ -306,12 +316,15 @@ class Answer {
         if (loading.gravity >= gravity[index].torque) gravity[index] = {loading.gravity, at};
       }
     }
-    document_["guaranteed_force"] = json_number(force);
+    document_[linear > 0 ? "guaranteed_force" : "guaranteed_moment"] = json_number(force);
     sheet_.title(fmt::format("{}: sizing of the drives", model_.description.name), where_);
     sheet_.paragraph(
         fmt::format("The drives can hold {} in every direction {}, for as long as one likes, on top of the "
-                    "device's own weight. Another load: --load FX,FY,FZ.",
-                    quantity(force, 1.0, "N"), where_));
+                    "device's own weight. Another load: --load {}.",
+                    quantity(force, 1.0, linear > 0 ? "N" : "N m"), where_,
+                    linear == 0   ? "MX,MY,MZ"
+                    : linear == 2 ? "FX,FY"
+                                  : "FX,FY,FZ"));
     sheet_.heading(efforts("Torque", "Force", "Torque and force"));
     Json joints = Json::array();
     std::vector<std::vector<std::string>> rows;
@@ -331,10 +344,10 @@ class Answer {
                         {"ok", good}});
       const Vector3 at = required[index].at * kMilli;
       const char* unit = unit_of(j);
-      const double weight = gravity[index].torque < 1e-12 * limit[j] ? 0.0 : gravity[index].torque;
-      rows.push_back({name, readable(required[index].torque, unit), readable(weight, unit),
-                      readable(limit[j], unit), readable(peak[j], unit),
-                      percent(required[index].torque / limit[j]), good ? "✓" : "✗", millimetres(at)});
+      const double needed = without_dust(required[index].torque, limit[j]);
+      rows.push_back({name, readable(needed, unit),
+                      readable(without_dust(gravity[index].torque, limit[j]), unit), readable(limit[j], unit),
+                      readable(peak[j], unit), percent(needed / limit[j]), good ? "✓" : "✗", millimetres(at)});
       demands_.push_back({required[index].torque, 0.0});
     }
     sheet_.table({"joint", "required", "gravity", "continuous", "peak", "used", "", "worst at mm"}, rows);
@@ -364,12 +377,13 @@ class Answer {
                                           : where_);
     if (one_load) {
       const Vector3 &f = loads_[0].force, &m = loads_[0].moment;
-      const std::string moment =
-          m.isZero(0.0) ? "" : fmt::format(" and ({:g}, {:g}, {:g}) N m", m.x(), m.y(), m.z());
-      sheet_.paragraph(
-          fmt::format("For the {} load ({:g}, {:g}, {:g}) N{} on the hand, {}, on top of the device's own "
-                      "weight.",
-                      to_string(loads_[0].kind), f.x(), f.y(), f.z(), moment, where_));
+      const auto vector = [](const Vector3& v, const char* unit) {
+        return fmt::format("({:g}, {:g}, {:g}) {}", v.x(), v.y(), v.z(), unit);
+      };
+      std::string load = mechanism_.linear_rows() > 0 || !f.isZero(0.0) ? vector(f, "N") : "";
+      if (load.empty() || !m.isZero(0.0)) load += (load.empty() ? "" : " and ") + vector(m, "N m");
+      sheet_.paragraph(fmt::format("For the {} load {} on the hand, {}, on top of the device's own weight.",
+                                   to_string(loads_[0].kind), load, where_));
     } else {
       sheet_.paragraph(
           fmt::format("For every load {}, on top of the device's own weight: the worst of each kind.", where_));
@@ -395,7 +409,7 @@ class Answer {
   }
 
   Json load_numbers(const LoadDescription& load) const {
-    Json numbers = json_array(load.force);
+    Json numbers = mechanism_.linear_rows() > 0 ? json_array(load.force) : Json::array();
     if (mechanism_.tool_turns()) {
       for (const double value : load.moment) numbers.push_back(json_number(value));
     }
@@ -451,10 +465,11 @@ class Answer {
         if (drive) item["motor_torque"] = json_number(drive->motor_torque(std::abs(demand.torque)));
         demands[to_string(kind)] = item;
         const std::string limit = drive ? to_string(limit_of.limited_by) : "no drive";
+        const double needed = without_dust(std::abs(demand.torque), demand.available);
         rows[kind == LoadKind::peak ? 1 : 0].push_back(
-            {name, readable(std::abs(demand.torque), unit_of(j)), readable(demand.available, unit_of(j)),
-             percent(demand.utilisation), demand.ok ? "✓" : "✗ " + limit, posture_name(demand.posture),
-             load.name});
+            {name, readable(needed, unit_of(j)), readable(demand.available, unit_of(j)),
+             percent(needed > 0.0 ? demand.utilisation : 0.0), demand.ok ? "✓" : "✗ " + limit,
+             posture_name(demand.posture), load.name});
       }
       entry["demands"] = demands;
       joints.push_back(entry);

@@ -110,14 +110,16 @@ Json write_balance(const Description& description, const Mechanism& mechanism,
   }
   sheet.row("moving mass", quantity(moving_mass(mechanism), kMilli, "g"));
   sheet.row("mass centre strays", quantity(residual.stray, kMilli, "mm"), "from its mean over the postures");
-  sheet.row("weight at the tool", interval(lightest, heaviest, kMilli, "g"),
-            "with the drives off, as a scale shows it");
+  const bool moves = mechanism.linear_rows() > 0;  // or only turns, and rests on no scale
+  if (moves)
+    sheet.row("weight at the tool", interval(lightest, heaviest, kMilli, "g"),
+              "with the drives off, as a scale shows it");
 
   Json entry{{"joints", joints},
              {"moving_mass", json_number(moving_mass(mechanism))},
              {"mass_centre", json_array(residual.centre)},
              {"stray", json_number(residual.stray)},
-             {"weight_at_tool", {json_number(lightest), json_number(heaviest)}}};
+             {"weight_at_tool", moves ? Json{json_number(lightest), json_number(heaviest)} : Json(nullptr)}};
   entry["counterweight"] = nullptr;
   if (const std::optional<Best> best = arm ? best_counterweight(description, moments, level) : std::nullopt) {
     const BodyDescription &now = description.bodies[best->body], &then = best->balanced.body;

@@ -120,12 +120,6 @@ CharacteristicLength characteristic_length(std::span<const Jacobian> jacobians, 
   return result_at(std::exp(0.5 * (low + high)));
 }
 
-Jacobian JacobianScale::motions(const Jacobian& tool) const {
-  const Jacobian J = homogeneous(tool);
-  if (J.cols() >= J.rows()) return J;
-  return svd(J).u.leftCols(J.cols()).transpose() * J;
-}
-
 Jacobian JacobianScale::homogeneous_rows(const Jacobian& rows) const {
   JacobianUnits of_one_kind = units;
   of_one_kind.linear_rows = static_cast<int>(rows.rows());
@@ -200,9 +194,8 @@ JacobianScale jacobian_scale(const Mechanism& mechanism) {
 }
 
 double isotropy(const Jacobian& jacobian) {
-  const auto m = jacobian.rows();
-  if (jacobian.cols() < m) return 0.0;
   const SmallVector sigma = svd(jacobian).sigma;
+  const auto m = sigma.size();
   const double mean = sigma.squaredNorm() / static_cast<double>(m);
   if (!(sigma[m - 1] > 0.0)) return 0.0;
   double logarithms = 0.0;

@@ -55,9 +55,6 @@ struct JacobianScale {
   Jacobian homogeneous(const Jacobian& tool) const { return zwidth::homogeneous(tool, units, length); }
   /// Of linear rows alone, or of angular rows alone: joints that slide and joints that turn made comparable.
   Jacobian homogeneous_rows(const Jacobian& rows) const;
-  /// The homogeneous Jacobian in a basis of the motions that the tool has: square, with the same singular
-  /// values, where there are fewer joints than rows, and as it is elsewhere.
-  Jacobian motions(const Jacobian& tool) const;
   /// Largest over smallest singular value of the homogeneous Jacobian, of a tool with fewer freedoms than rows
   /// over those that it has; infinity if it is singular.
   double condition_number(const Jacobian& tool) const;
@@ -70,7 +67,7 @@ struct JacobianScale {
 JacobianScale jacobian_scale(const Mechanism& mechanism);
 
 /// Geometric over arithmetic mean of the eigenvalues of J J^T, between 0 (singular) and 1 (isotropic)
-/// (Kim & Khosla 1991). The rows must be of one kind, or the Jacobian homogeneous.
+/// (Kim & Khosla 1991); of J^T J where joints are fewer. Rows of one kind, or a homogeneous Jacobian.
 double isotropy(const Jacobian& jacobian);
 
 /// Classes of the condition number (Singh, Saha & Manivannan, section 4.1): K < 5, 5 <= K <= 10, 10 < K <= 100

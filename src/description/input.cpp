@@ -99,6 +99,11 @@ std::string show_whole(const toml::node& node) {
     for (const toml::node& element : *array) list += (list.empty() ? "" : ", ") + show_whole(element);
     return '[' + list + ']';
   }
+  if (const toml::value<double>* number =
+          node.as_floating_point()) {  // as short as it can be told, as people write it
+    std::string text = fmt::format("{}", number->get());
+    return text.find_first_of(".en") == text.npos ? text + ".0" : text;
+  }
   std::ostringstream out;
   node.visit([&out](const auto& value) { out << toml::toml_formatter{value, toml::format_flags::none}; });
   return out.str();

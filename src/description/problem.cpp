@@ -84,7 +84,9 @@ std::vector<std::string> nearest_names(const std::string& name, const std::vecto
         name.size() >= 3 && (candidate.find(name) != std::string::npos ||
                              (candidate.size() >= 3 && name.find(candidate) != std::string::npos));
     if (contains) distance = std::min(distance, allowed);
-    if (distance <= allowed) near.emplace_back(distance, candidate);
+    const auto known = [&](const auto& one) { return std::get<1>(one) == candidate; };
+    if (distance <= allowed && std::none_of(near.begin(), near.end(), known))
+      near.emplace_back(distance, candidate);
   }
   std::stable_sort(near.begin(), near.end(),
                    [](const auto& a, const auto& b) { return std::get<0>(a) < std::get<0>(b); });

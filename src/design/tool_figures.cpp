@@ -153,7 +153,7 @@ FigureTable tool_figures() {
        .meaning = "geometric over arithmetic mean of the squared singular values: 1 isotropic, 0 singular",
        .answers = {{"at isotropy"}, {"at homogeneous.isotropy"}},
        .of = [](PostureFigures& at, const FigureOptions&) {
-         return isotropy(at.device().scale().motions(at.rates().tool));
+         return isotropy(at.device().scale().homogeneous(at.rates().tool));
        }});
   add({.name = "characteristic_length",
        .unit = "m",

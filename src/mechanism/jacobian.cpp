@@ -102,13 +102,12 @@ Dexterity dexterity(const Jacobian& jacobian) {
   Dexterity result;
   const Eigen::Index last = sigma.size() - 1;
   result.max_singular_value = sigma[0];
-  // With fewer active joints than tool rows some direction never moves at all.
-  result.min_singular_value = jacobian.cols() < jacobian.rows() ? 0.0 : sigma[last];
+  result.min_singular_value = sigma[last];
   result.condition_number = result.min_singular_value > 0.0
                                 ? result.max_singular_value / result.min_singular_value
                                 : std::numeric_limits<double>::infinity();
-  result.manipulability = jacobian.cols() < jacobian.rows() ? 0.0 : sigma.prod();
-  result.weak_direction = u.col(jacobian.rows() - 1);
+  result.manipulability = sigma.prod();
+  result.weak_direction = u.col(last);
   return result;
 }
 

@@ -26,10 +26,10 @@ struct BiasAcceleration {
 BiasAcceleration bias_acceleration(const Posture& posture, const Rates& rates,
                                    const ActiveVector& active_rate) noexcept;
 
-/// Figures of one Jacobian's singular values (2-norm), for a tool that only translates or only rotates.
+/// Of singular values (2-norm) of a tool that only translates or rotates: as many as rows or, if fewer, joints.
 struct Dexterity {
   double condition_number = 0.0;  ///< largest over smallest singular value; infinity at a singularity
-  double manipulability = 0.0;    ///< sqrt(det(J J^T)), product of the singular values (Yoshikawa 1985)
+  double manipulability = 0.0;    ///< their product, sqrt(det(J J^T)) or sqrt(det(J^T J)) (Yoshikawa 1985)
   double min_singular_value = 0.0;
   double max_singular_value = 0.0;
   ToolVector weak_direction;  ///< unit tool direction of the smallest singular value: what a singularity loses

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 #include <random>
+#include <tuple>
 
 #include "zwidth/mechanism/internal/closure_equations.h"
 #include "zwidth/mechanism/internal/posture_builder.h"
@@ -362,7 +363,7 @@ MobilitySample sample_mobility(const Mechanism& mechanism, int random) {
     const Mobility here = mobility(posture);
     // An arm that is stretched out has its freedoms, but the tool does not show them.
     const auto order = [](const Mobility& one) {
-      return std::pair(one.freedoms + one.loose, -one.tool_freedoms);
+      return std::tuple(one.freedoms + one.loose, -one.tool_freedoms, -one.loose_tool);
     };
     if (counted.empty() || order(here) < order(sample.typical)) {
       sample.typical = here;
@@ -378,7 +379,9 @@ MobilitySample sample_mobility(const Mechanism& mechanism, int random) {
     count(*solution.posture);
   }
   const JointVector home = sample.posture.empty() ? mechanism.home_guess() : sample.posture[0].joints();
-  for (int k = 0; k < 2 * kEnough && static_cast<int>(counted.size()) < kEnough; ++k) {
+  // Joints that no drive decides are all left as home has them, stretched out perhaps: others are tried too.
+  const bool loose = !counted.empty() && sample.typical.loose > 0;
+  for (int k = 0; k < 2 * kEnough && (loose || static_cast<int>(counted.size()) < kEnough); ++k) {
     Posture posture = PostureBuilder::open(mechanism);
     PostureBuilder::joints(posture) = home;
     for (int j = 0; j < mechanism.joint_count(); ++j) {

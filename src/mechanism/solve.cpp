@@ -124,7 +124,12 @@ ZWIDTH_WIDE Newton reach(Posture& posture, int l, double tolerance, int limit, B
     PostureBuilder::place_leg(posture, l);
     const int rows = closure_error(posture, l, error);
     newton.residual = 0.0;
-    for (int i = 0; i < rows; ++i) newton.residual = std::max(newton.residual, std::abs(error[i]));
+    double sum = 0.0;
+    for (int i = 0; i < rows; ++i) {
+      newton.residual = std::max(newton.residual, std::abs(error[i]));
+      sum += error[i];
+    }
+    if (!std::isfinite(sum)) return newton;  // a goal so far that rounding left no number
     newton.converged = newton.residual <= tolerance;
     if (newton.converged || newton.iterations >= limit || budget.left <= 0 ||
         stagnation.reached(newton.residual))
@@ -174,7 +179,8 @@ Newton lead_leg(Posture& posture, int l, const Pose& from, const Pose& to, doubl
   Pose& tool = PostureBuilder::tool(posture);
   const double way = std::max((to.position - from.position).norm() / length,
                               internal::rotation_between(from.rotation, to.rotation).norm());
-  double step = 1.0 / std::max(1.0, std::ceil(way / kLongestStep));
+  // However long the way, steps are long enough to get on.
+  double step = std::max(kShortestStep, 1.0 / std::max(1.0, std::ceil(way / kLongestStep)));
   double done = 0.0;
   Newton newton;
   while (done < 1.0) {

@@ -237,6 +237,23 @@ TEST(MechanismErrors, ALoadInTheFileOfTheWrongDimension) {
                  "force = [0, \"5 N\"]", {"load[0].force"});
 }
 
+// Values are told as people write them, not with what a double adds.
+TEST(MechanismErrors, ShowValuesAsTheyAreWritten) {
+  expect_refused(with(kBars, "axis = [0, 0, 1]", "axis = 0.1"), "axis = 0.1", {"axis = 0.1:"});
+  expect_refused(with(kBars, "range = [\"60 deg\", \"200 deg\"]", "range = [2.6, 0.1]"), "range = [2.6, 0.1]",
+                 {"range = [2.6, 0.1]:", "smaller to a larger"});
+}
+
+TEST(MechanismErrors, UnderConstrainedNamesWhatStillMoves) {
+  // An elbow more in the right leg, which home has stretched out: it moves, and the tool with it.
+  const std::string elbow =
+      "[[leg.joint]]\nname = \"wrist\"\ntype = \"revolute\"\naxis = [0, 0, 1]\npoint = [\"200 mm\", 0, 0]\n";
+  expect_refused(std::string(kBars) + elbow, "[[leg.joint]]\nname = \"elbow\"",
+                 {"under-constrained: with every active joint held", "\"left/elbow\"", "\"right/wrist\"",
+                  "can still move, and the platform with them", "3 freedoms and 2 active joints",
+                  "set active = true in one of them", "free = true where the hand moves it"});
+}
+
 void expect_words(const std::vector<std::string>& arguments, const std::vector<std::string>& words) {
   const Outcome outcome = run(arguments);
   EXPECT_EQ(outcome.status, 2) << outcome.err;

@@ -124,5 +124,21 @@ TEST(Dexterity, NamesTheDirectionThatASingularityLoses) {
   EXPECT_NEAR(dexterity(J).manipulability, 1.0, 1e-15);
 }
 
+// A pan and tilt head moves its tool on a sphere: of the two motions that there are, all figures, whatever the
+// frame; the third is none of its singularities.
+TEST(Dexterity, WithFewerJointsThanRowsIsOfTheMotionsThatThereAre) {
+  const Matrix3 R =
+      (Eigen::AngleAxisd(0.4, Vector3::UnitX()) * Eigen::AngleAxisd(1.1, Vector3::UnitY())).matrix();
+  Jacobian J(3, 2);
+  J << 0.2, 0.0, 0.0, 0.5, 0.0, 0.0;
+  const Dexterity head = dexterity(Jacobian(R * J));
+  EXPECT_NEAR(head.condition_number, 2.5, 1e-14);
+  EXPECT_NEAR(head.manipulability, 0.1, 1e-15);
+  EXPECT_NEAR(head.min_singular_value, 0.2, 1e-15);
+  EXPECT_NEAR(std::abs(head.weak_direction.dot(R.col(0))), 1.0, 1e-14);
+  J(0, 0) = 0.0;  // on the pan axis it only tilts
+  EXPECT_GT(dexterity(Jacobian(R * J)).condition_number, 1e14);
+}
+
 }  // namespace
 }  // namespace zwidth

@@ -10,10 +10,31 @@ namespace zwidth {
 
 namespace {
 
-int run_at(const at::Arguments& arguments, const Terminal& terminal) {
+/// A tool that only turns is where it is: of it an orientation alone says all.
+void place_what_only_turns(at::Arguments& arguments, const Model& model, const at::Frame& frame) {
+  const Mechanism& mechanism = model.mechanism;
+  if (!arguments.joints.empty() || !arguments.position.empty() || mechanism.linear_rows() > 0) return;
+  ActiveVector home(mechanism.active_count());
+  for (int i = 0; i < home.size(); ++i) home[i] = mechanism.home_guess()[mechanism.active_joint(i)];
+  const Solution there = solve_forward(mechanism, home);
+  if (!there) return;
+  const Vector3 p = frame.R * there.posture->tool().position;
+  arguments.position = fmt::format("{},{},{}", p.x(), p.y(), p.z());
+}
+
+int run_at(at::Arguments arguments, const Terminal& terminal) {
+  at::check_only(arguments.only);
+  const Model model(read_device(arguments));
+  const at::Frame frame = at::frame_of(arguments, model.description, model.mechanism);
+  const std::string where_given = arguments.joints.empty() ? arguments.position : arguments.joints;
+  if (!arguments.orientation.empty() || !arguments.rotation.empty())
+    place_what_only_turns(arguments, model, frame);
   if (arguments.joints.empty() == arguments.position.empty()) {
     throw InputError(
-        "give either --joints (e.g. --joints 10deg,20deg,30deg) or --position (e.g. --position 0,0,150mm)");
+        model.mechanism.linear_rows() > 0
+            ? "give either --joints (e.g. --joints 10deg,20deg,30deg) or --position (e.g. --position 0,0,150mm)"
+            : "give either --joints (e.g. --joints 10deg,20deg) or --orientation (e.g. --orientation "
+              "10deg,20deg,0)");
   }
   for (const auto& [option, value] : {std::pair("--orientation", &arguments.orientation),
                                       {"--rotation", &arguments.rotation},
@@ -24,9 +45,6 @@ int run_at(const at::Arguments& arguments, const Terminal& terminal) {
       throw InputError(
           fmt::format("{} {}: goes with --position; joint values leave nothing open", option, *value));
   }
-  at::check_only(arguments.only);
-  const Model model(read_device(arguments));
-  const at::Frame frame = at::frame_of(arguments, model.description, model.mechanism);
   at::Found found;
   at::find_posture(model, arguments, frame, found);
   const char* status = to_string(found.solution.status);
@@ -37,12 +55,12 @@ int run_at(const at::Arguments& arguments, const Terminal& terminal) {
   const bool degraded = found.solution.near_singularity();
   answer.put("degraded", degraded);
   answer.put("frame", arguments.frame);
-  std::string where = arguments.joints.empty() ? arguments.position : arguments.joints;
-  if (!arguments.orientation.empty()) where += ", turned " + arguments.orientation;
-  if (!arguments.rotation.empty()) where += ", turned " + arguments.rotation;
-  answer.page().title(
-      fmt::format("{} at {}", model.description.name, where),
-      arguments.frame == "user" ? "user's frame: x to the user, y right, z up" : "device frame");
+  std::string where = where_given.empty() ? "" : " at " + where_given;
+  const std::string& turned = arguments.orientation.empty() ? arguments.rotation : arguments.orientation;
+  if (!turned.empty()) where += (where.empty() ? " turned " : ", turned ") + turned;
+  answer.page().title(model.description.name + where, arguments.frame == "user"
+                                                          ? "user's frame: x to the user, y right, z up"
+                                                          : "device frame");
   const Tint tint = !found.reached() ? Tint::bad : degraded ? Tint::warning : Tint::good;
   const bool both = degraded && found.solution.status != SolveStatus::degraded;
   answer.page().row("status", tinted(terminal, tint, fmt::format("{}{}", status, both ? ", degraded" : "")));
@@ -91,7 +109,8 @@ void add_at(CLI::App& app, Context& context) {
                    "values of the active joints, between commas; those that the hand alone moves may be left "
                    "out, and are then at home")
       ->type_name("A,B,...");
-  verb->add_option("--position", arguments->position, "position of the tool; X,Y of one that moves in a plane")
+  verb->add_option("--position", arguments->position,
+                   "position of the tool; X,Y of one that moves in a plane, left out of one that only turns")
       ->type_name("X,Y,Z");
   verb->add_option("--orientation", arguments->orientation,
                    "orientation of the tool: angles ROLL,PITCH,YAW or a quaternion W,X,Y,Z")

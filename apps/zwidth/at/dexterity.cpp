@@ -1,5 +1,6 @@
 #include "zwidth/analysis/dexterity.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <fmt/format.h>
@@ -61,7 +62,7 @@ void write_mixed(const Situation& at, const Moving& moving, Answer& answer) {
   Json entry;
   entry["length"] = json_number(scale.length);
   entry["condition_number"] = json_number(all);
-  entry["isotropy"] = json_number(isotropy(scale.motions(at.rates.tool)));
+  entry["isotropy"] = json_number(isotropy(scale.homogeneous(at.rates.tool)));
   const auto of_one_kind = [&](const char* key, const Jacobian& rows) {
     const double condition = scale.rows_condition_number(rows);
     entry[key] = {{"condition_number", json_number(condition)},
@@ -127,13 +128,14 @@ void write_dexterity(const Situation& at, Answer& answer) {
     }
   }
   if (!answer.wants("manipulability")) return;
-  const int linear = units.linear_rows;
-  const bool metres = linear > 0 && units.sliding_joints == 0;
-  const std::string unit = !metres       ? ""
-                           : linear == 3 ? " [cm³/rad³]"
-                           : linear == 2 ? " [cm²/rad²]"
-                                         : " [cm/rad]";
-  answer.cell("manipulability" + unit, manipulability * (metres ? std::pow(100.0, linear) : 1.0), "√ det J Jᵀ");
+  const bool fewer = J.cols()<J.rows(), metres = units.linear_rows> 0 && units.sliding_joints == 0;
+  const auto motions = static_cast<int>(std::min(J.cols(), J.rows()));
+  const std::string unit = !metres        ? ""
+                           : motions == 3 ? " [cm³/rad³]"
+                           : motions == 2 ? " [cm²/rad²]"
+                                          : " [cm/rad]";
+  answer.cell("manipulability" + unit, manipulability * (metres ? std::pow(100.0, motions) : 1.0),
+              fewer ? "√ det Jᵀ J, of the motions that there are" : "√ det J Jᵀ");
 }
 
 void write_ellipsoids(const Situation& at, Answer& answer) {

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "json_rows.h"
 #include "section.h"
 
 #include "zwidth/analysis/force.h"
@@ -24,7 +25,7 @@ void show_matrix(std::string_view label, const ActiveMatrix& M, double factor, c
 
 void write_mass_matrix(const Situation& at, Answer& answer) {
   const ActiveMatrix M = mass_matrix(at.posture, at.rates);
-  answer.put("mass_matrix", json_array(M));
+  answer.put("mass_matrix", json_rows(M));
   answer.columns(at.mechanism.active_names());
   const JointUnits units = joint_units(at.mechanism);
   show_matrix(fmt::format("mass matrix [{}]", units.inertia), M, units.inertia_factor, "", answer);
@@ -49,7 +50,7 @@ void write_cartesian_mass(const Situation& at, Answer& answer) {
     return;
   }
   const ToolMatrix felt = cartesian_mass(at.J, mass_matrix(at.posture, at.rates));
-  answer.put("cartesian_mass", json_array(felt));
+  answer.put("cartesian_mass", json_rows(felt));
 }
 
 namespace {

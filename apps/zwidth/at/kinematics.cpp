@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "json_rows.h"
 #include "section.h"
 
 #include "zwidth/analysis/dexterity.h"
@@ -79,7 +80,7 @@ void write_orientation(const Situation& at, Answer& answer) {
 }
 
 void write_jacobian(const Situation& at, Answer& answer) {
-  answer.put("jacobian", json_array(at.J));
+  answer.put("jacobian", json_rows(at.J));
   answer.columns(at.mechanism.active_names());
   const std::vector<std::string> names = at.frame.names();
   const unsigned sliding = units_of(at).sliding_joints;

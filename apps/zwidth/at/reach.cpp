@@ -79,6 +79,11 @@ std::string within_limits(const Found& found, const Mechanism& mechanism) {
   if (mechanism.serial() != nullptr) return "";
   for (const Solution& one : found.solutions) {
     if (!one || one.other_assembly || one.status == SolveStatus::joint_limit) continue;
+    // Where the way there is barred the joint values would lead nowhere.
+    const Solution driven = solve_forward(mechanism, one.posture->active());
+    if (!driven || (driven.posture->tool().position - one.posture->tool().position).norm() >
+                       1e-6 * mechanism.characteristic_length())
+      continue;
     std::string joints;
     for (int i = 0; i < mechanism.active_count(); ++i)
       joints += fmt::format("{}{}", i == 0 ? "" : ",", option_value(mechanism, i, one.posture->active()[i]));
@@ -232,6 +237,10 @@ void write_branches(const Found& found, const Model& model, Answer& answer) {
 void write_nearest(Found& found, const Model& model, const Arguments& arguments, const Frame& frame,
                    Answer& answer) {
   const Mechanism& mechanism = model.mechanism;
+  if (mechanism.linear_rows() == 0) {
+    answer.undefined("nearest_reachable", "the tool only turns");
+    return;
+  }
   const auto point = nearest_reachable(mechanism, found.goal.tool.position);
   if (!point) {
     answer.undefined("nearest_reachable", "no joint values close the legs");

@@ -16,6 +16,11 @@ namespace {
 // What rounding leaves of a singularity: roots of differences that cancel are good to the square root of a
 // double's precision.
 constexpr double kRounding = 1e-7;
+/// Of a posture whose loops are only closed to `residual` [m]: where they fold, x^2 = 0 is met with x the root.
+double rounding_of(const Solution& solution, const Mechanism& mechanism) {
+  const double open = std::max(0.0, solution.residual) / mechanism.characteristic_length();
+  return std::max(kRounding, 3.0 * std::sqrt(open));
+}
 
 constexpr const char* kMotion = "give --rate or --acceleration";
 constexpr const char* kLoad = "give --load";
@@ -55,12 +60,12 @@ void drop_idle_rows(const Frame& frame, double length, Jacobian& J) {
 }
 
 /// Looks for singularities, and takes from J what is only rounding.
-Singularity find_singularity(const Posture& posture, bool degraded, const Rates& rates, const Frame& frame,
-                             Jacobian& J) {
+Singularity find_singularity(const Posture& posture, bool degraded, double rounding, const Rates& rates,
+                             const Frame& frame, Jacobian& J) {
   const Mechanism& mechanism = posture.mechanism();
   Singularity result;
-  const SingularDirections exact = singular_directions(posture, kRounding);
-  result.gains = !(rates.closure >= kRounding) || !J.allFinite();
+  const SingularDirections exact = singular_directions(posture, rounding);
+  result.gains = !(rates.closure >= rounding) || !J.allFinite();
   if (result.gains) result.free = ways_of(mechanism, exact.gained, frame);
   result.loses = !exact.lost.empty();
   result.lost = ways_of(mechanism, exact.lost, frame);
@@ -135,7 +140,7 @@ Situation::Situation(const Model& of, const Arguments& arguments, const Frame& u
       frame(user),
       rates(zwidth::rates(posture)),
       J(frame.turn * rates.tool),
-      singularity(find_singularity(posture, degraded, rates, frame, J)),
+      singularity(find_singularity(posture, degraded, rounding_of(solution, mechanism), rates, frame, J)),
       rate(ActiveVector::Zero(mechanism.active_count())),
       acceleration(rate),
       moving(!arguments.rate.empty() || !arguments.acceleration.empty()) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <numbers>
 
+#include "json_rows.h"
 #include "section.h"
 
 #include "zwidth/analysis/mechanical.h"
@@ -257,7 +258,7 @@ namespace {
 Json modes_entry(const Situation& at, const Modes& modes) {
   Json entry;
   entry["frequencies"] = json_array(modes.frequencies);
-  entry["shapes"] = json_array(Eigen::MatrixXd(at.frame.turn * modes.shapes));
+  entry["shapes"] = json_rows(Eigen::MatrixXd(at.frame.turn * modes.shapes));
   return entry;
 }
 

@@ -57,10 +57,15 @@ ZWIDTH_WIDE Newton close_loops(Posture& posture, double tolerance, int limit, Bu
   while (true) {
     PostureBuilder::place_legs(posture);
     newton.residual = 0.0;
+    double sum = 0.0;
     for (int l = 0; l < legs; ++l) {
       const int rows = closure_error(posture, l, error[l]);
-      for (int i = 0; i < rows; ++i) newton.residual = std::max(newton.residual, std::abs(error[l][i]));
+      for (int i = 0; i < rows; ++i) {
+        newton.residual = std::max(newton.residual, std::abs(error[l][i]));
+        sum += error[l][i];
+      }
     }
+    if (!std::isfinite(sum)) return newton;  // joints so far out that rounding left no number
     newton.converged = newton.residual <= tolerance;
     if (newton.converged || newton.iterations >= limit || budget.left <= 0 ||
         stagnation.reached(newton.residual))
@@ -122,7 +127,8 @@ Newton lead_active(Posture& posture, const ActiveVector& target, double toleranc
   for (int i = 0; i < mechanism.active_count(); ++i) {
     way = std::max(way, scaled(mechanism.joints()[mechanism.active_joint(i)], target[i] - from[i], length));
   }
-  const double longest = 1.0 / std::max(1.0, std::ceil(way / kLongestStep));
+  // However long the way, steps are long enough to get on.
+  const double longest = std::max(kShortestStep, 1.0 / std::max(1.0, std::ceil(way / kLongestStep)));
   double step = longest, done = 0.0;
   Newton newton;
   while (done < 1.0) {

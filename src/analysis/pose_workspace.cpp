@@ -118,7 +118,8 @@ class Figures {
     const auto fill_kind = [&](const Jacobian& rows, const std::vector<int>& axes, int along, int weakest) {
       for (Eigen::Index r = 0; r < rows.rows(); ++r) {
         const int axis = axes[static_cast<std::size_t>(r)] % 3;
-        values[static_cast<std::size_t>(along + axis)] = internal::axis_load(rows, range, r);
+        values[static_cast<std::size_t>(along) + static_cast<std::size_t>(axis)] =
+            internal::axis_load(rows, range, r);
       }
       values[static_cast<std::size_t>(weakest)] = internal::weakest_load(rows, range);
     };
@@ -439,7 +440,8 @@ AnyOrientation any_orientation(const PoseGuide& guide, const PoseFlood& flood, s
   any.places = static_cast<int>(every_way.size());
   std::ranges::sort(shares);
   if (!shares.empty()) {
-    AnyOrientation::Spread& share = any.share.emplace();
+    any.share = AnyOrientation::Spread{};
+    AnyOrientation::Spread& share = *any.share;
     for (const double value : shares) share.mean += value / static_cast<double>(shares.size());
     share.least = shares.front();
     share.most = shares.back();

@@ -79,6 +79,11 @@ enum Value {
 };
 using Values = std::array<double, value_count>;
 
+// Of x, y or z among three of them.
+constexpr std::size_t component(Value first, int axis) {
+  return static_cast<std::size_t>(first) + static_cast<std::size_t>(axis);
+}
+
 PostureStatistic& statistic_of(PostureSweep& sweep, int value) {
   PostureStatistic* const single[] = {&sweep.translation_conditioning,
                                       &sweep.rotation_conditioning,
@@ -143,8 +148,7 @@ class Sweeper {
       values[translation_conditioning] = 1.0 / scale_.rows_condition_number(linear);
       values[manipulability] = dexterity(linear).manipulability;
     }
-    if (angular.rows() > 0)
-      values[rotation_conditioning] = 1.0 / scale_.rows_condition_number(angular);
+    if (angular.rows() > 0) values[rotation_conditioning] = 1.0 / scale_.rows_condition_number(angular);
     if (options_.torque) loads(options_.torque(posture), linear, angular, values);
     if (options_.joint_step.size() > 0) steps(rate.tool, values);
     if (!mechanism_.bodies().empty())
@@ -167,9 +171,9 @@ class Sweeper {
  private:
   void loads(const TorqueRange& range, const Jacobian& linear, const Jacobian& angular, Values& values) const {
     for (Eigen::Index r = 0; r < linear.rows(); ++r)
-      values[static_cast<std::size_t>(force + axis_of(mechanism_, r))] = internal::axis_load(linear, range, r);
+      values[component(force, axis_of(mechanism_, r))] = internal::axis_load(linear, range, r);
     for (Eigen::Index r = 0; r < angular.rows(); ++r) {
-      values[static_cast<std::size_t>(moment + axis_of(mechanism_, linear.rows() + r))] =
+      values[component(moment, axis_of(mechanism_, linear.rows() + r))] =
           internal::axis_load(angular, range, r);
     }
     if (linear.rows() > 0) values[weakest_force] = internal::weakest_load(linear, range);
@@ -181,7 +185,7 @@ class Sweeper {
     double turn = 0.0;
     for (Eigen::Index r = 0; r < steps.size(); ++r) {
       if (r < linear_) {
-        values[static_cast<std::size_t>(step + axis_of(mechanism_, r))] = steps[r];
+        values[component(step, axis_of(mechanism_, r))] = steps[r];
       } else {
         turn = std::max(turn, steps[r]);
       }

@@ -124,11 +124,12 @@ int platform_workspace(const WorkspaceArguments& arguments, const Model& model, 
   const std::vector<ArmFact> loads = pose_load_facts(workspace);
   if (!loads.empty()) sheet.heading("Forces, continuous");
   for (const ArmFact& fact : loads) sheet.row(fact.name, fact.value, fact.note);
-  if (!loads.empty())
+  if (!loads.empty()) {
     sheet.paragraph(
         "Pure forces and pure moments, whichever way is weaker; the device's own weight is "
         "not taken off.",
         2, Tint::dim);
+  }
   const std::vector<ArmFact> anyhow = any_orientation_facts(workspace);
   if (!anyhow.empty()) sheet.heading("In any orientation");
   for (const ArmFact& fact : anyhow) sheet.row(fact.name, fact.value, fact.note);

@@ -48,6 +48,18 @@ std::vector<Problem> of_device(const DescriptionError& error, const Study& study
   return placed;
 }
 
+// What keeps the study's algorithm from searching its variables.
+std::vector<Problem> of_search(const StudyModel& model) {
+  SearchProblem problem = model.search_problem();
+  problem.evaluate = [](std::span<const double>, std::span<double>) { return false; };  // is not called
+  std::vector<Problem> found;
+  for (const std::string& rule : search_problems(problem, study_search_options(model))) {
+    const bool of_population = rule.find("population") != rule.npos;
+    found.push_back({.key = of_population ? "search.population" : "search.algorithm", .rule = rule});
+  }
+  return found;
+}
+
 }  // namespace
 
 std::unique_ptr<StudyModel> read_study_model(const std::string& study,
@@ -55,7 +67,9 @@ std::unique_ptr<StudyModel> read_study_model(const std::string& study,
   const auto device_of = [](const Study& one) { return read_device(one.device, one.overrides); };
   const Study read = read_study(study, overrides, catalogue(), [&](const Study& one) -> std::vector<Problem> {
     try {
-      return study_problems(one, device_of(one), catalogue());
+      const Description device = device_of(one);
+      std::vector<Problem> problems = study_problems(one, device, catalogue());
+      return problems.empty() ? of_search(StudyModel(one, device, catalogue())) : problems;
     } catch (const DescriptionError& error) {
       return of_device(error, one);
     }

@@ -117,6 +117,19 @@ TEST(Optimise, PlacesMistakesAboutTheDeviceInTheStudy) {
   EXPECT_NE(unknown.err.find("five-bar"), std::string::npos) << unknown.err;
 }
 
+// What keeps the algorithm from searching is found before it does.
+TEST(Optimise, ChecksTheAlgorithmAgainstTheStudy) {
+  const ScratchDirectory scratch;
+  const std::string study = scratch.file("even.toml", even_study(2));
+  const Outcome odd = run({"check", study, "--set", "search.population=41"});
+  EXPECT_EQ(odd.status, 2);
+  EXPECT_NE(odd.err.find("search.population = 41: nsga2 needs a population"), std::string::npos) << odd.err;
+  EXPECT_NE(odd.err.find("a multiple of 4"), std::string::npos) << odd.err;
+  const Outcome grid = run({"check", study, "--set", "search.algorithm='grid'"});
+  EXPECT_EQ(grid.status, 2);
+  EXPECT_NE(grid.err.find("a grid needs whole numbers"), std::string::npos) << grid.err;
+}
+
 // A division by zero in every design of a part of the space, and a box that is out of reach in another.
 TEST(Optimise, NamesWhatIsUndefinedWithAnExample) {
   const ScratchDirectory scratch;

@@ -253,12 +253,6 @@ StudyOutcome run_search(const StudyModel& model, const OptimiseArguments& argume
                     std::isnan(at.hypervolume) ? "none" : number(at.hypervolume), 100.0 * at.feasible_share));
     return !stop_on_interrupt();
   };
-  const std::vector<std::string> problems = search_problems(outcome.problem, options);
-  if (!problems.empty()) {
-    std::string text;
-    for (const std::string& one : problems) text += (text.empty() ? "" : "; ") + one;
-    throw InputError(fmt::format("{}: {}", study.name, text));
-  }
   try {
     outcome.result = search(outcome.problem, options);
   } catch (const std::runtime_error& error) {
@@ -323,7 +317,7 @@ void refine_choice(StudyOutcome& outcome, const StudyModel& model) {
   const auto start = std::chrono::steady_clock::now();
   SearchProblem problem = outcome.problem;
   problem.evaluate = [&](std::span<const double> designs, std::span<double> outcomes) {
-    done += static_cast<double>(designs.size() / problem.variables.size());
+    done += static_cast<double>(designs.size()) / static_cast<double>(problem.variables.size());
     progress.update(done, static_cast<double>(options.evaluations), "local search, at most");
     return outcome.problem.evaluate(designs, outcomes);
   };

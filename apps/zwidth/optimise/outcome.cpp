@@ -485,7 +485,9 @@ std::string outcome_text(const StudyOutcome& outcome, const StudyModel& model, c
             std::string(info(outcome.options.algorithm).what));
   const std::int64_t generations = result.history.empty() ? 0 : result.history.back().number;
   sheet.row("designs", fmt::format("{}", result.evaluations),
-            fmt::format("{} generations, {}", generations, to_words(result.end)));
+            outcome.options.algorithm == SearchAlgorithm::grid
+                ? std::string(to_words(result.end))
+                : fmt::format("{} generations, {}", generations, to_words(result.end)));
   const double total = result.seconds_evaluating + result.seconds_in_algorithm;
   if (total > 0.0) {
     sheet.row("time", quantity(total, 1.0, "s", 3),

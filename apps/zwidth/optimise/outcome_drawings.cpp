@@ -126,7 +126,11 @@ class Drawings {
           " All objectives together decide what belongs to the set, so its shadow on two of them is no line.";
     }
     if (with_start && !outcome_.start->feasible) caption += " The device breaks constraints.";
-    if (outcome_.start && !with_start) caption += " The device lies far outside.";
+    if (outcome_.start && !with_start) {
+      const bool defined =
+          std::isfinite(outcome_.start->objectives[a]) && std::isfinite(outcome_.start->objectives[b]);
+      caption += defined ? " The device lies far outside." : " The device has no value here.";
+    }
     const std::string title = fmt::format("{} against {}", second.name, first.name);
     figures_.push_back({.id = fmt::format("front-{}-{}", a + 1, b + 1),
                         .section = "front",

@@ -108,18 +108,20 @@ class Planner {
     return keys;
   }
 
+  void no_number(const std::vector<std::string>& keys, const std::string& key, const std::string& place) {
+    const bool part = !find_parts(device_, key).empty();
+    const std::string which = keys.size() > 1 ? fmt::format("has {}, which ", key) : "";
+    wrong(place, fmt::format("\"{}\"", key),
+          which + (part ? "is a part of the device, not a number" : "is no number of the device"),
+          part ? "list the parts to choose from with parts = [...]" : suggest(key, number_keys()));
+  }
+
   // The slots that take a value; notes keys that are none, or are set twice.
   std::vector<NumberSlot> claim_numbers(const std::vector<std::string>& keys, const std::string& place) {
     std::vector<NumberSlot> all;
     for (const std::string& key : keys) {
       std::vector<NumberSlot> slots = find_numbers(device_, key);
-      if (slots.empty()) {
-        const bool part = !find_parts(device_, key).empty();
-        const std::string which = keys.size() > 1 ? fmt::format("has {}, which ", key) : "";
-        wrong(place, fmt::format("\"{}\"", key),
-              which + (part ? "is a part of the device, not a number" : "is no number of the device"),
-              part ? "list the parts to choose from with parts = [...]" : suggest(key, number_keys()));
-      }
+      if (slots.empty()) no_number(keys, key, place);
       for (NumberSlot& slot : slots) {
         if (!claimed_.insert(slot.key).second) {
           wrong(place, fmt::format("\"{}\"", key), fmt::format("sets {} a second time", slot.key),
@@ -155,12 +157,7 @@ class Planner {
       const StudyTolerance& tolerance = study.tolerances[i];
       for (const std::string& key : tolerance.keys) {
         const std::vector<NumberSlot> slots = find_numbers(device_, key);
-        if (slots.empty()) {
-          wrong(at("tolerance", i, "key"), fmt::format("\"{}\"", key),
-                (tolerance.keys.size() > 1 ? fmt::format("has {}, which ", key) : "") +
-                    "is no number of the device",
-                suggest(key, number_keys()));
-        }
+        if (slots.empty()) no_number(tolerance.keys, key, at("tolerance", i, "key"));
         for (const NumberSlot& slot : slots) {
           check_dimension(slot, tolerance.dimension, at("tolerance", i, "half_width"));
         }

@@ -470,6 +470,8 @@ TEST(StudyProblems, RefusesWhatMakesNoSense) {
       {good + "[[derived]]\nkey = \"mechanism.coupler\"\nvalue = \"a1 * 2 m\"\n",
        "is an area, but mechanism.coupler is a length"},
       {good + "[[derived]]\nname = \"p\"\nvalue = \"a1 / (a1 - a1)\"\n", "has no value, whatever a1 may be"},
+      {good + "[[derived]]\nkey = [\"mechanism.coupler\", \"mechanism.copler\"]\nvalue = \"a1\"\n",
+       "has mechanism.copler, which is no number of the device"},
       {good + "[[objective]]\nname = \"a1\"\nminimise = \"2 * a1\"\n", "the name of a variable too"},
       {good + "[[constraint]]\nname = \"length\"\nvalue = \"a1\"\nmax = 1\n", "the name of an objective too"},
       {good + "[[derived]]\nkey = \"mechanism.coupler\"\nvalue = \"mechanism.coupler + 1 mm\"\n",

@@ -73,8 +73,8 @@ struct TurningRange {
   Matrix3 orientation = Matrix3::Identity();     ///< that it is turned from
   bool reached = false;                          ///< that orientation, at this place
   std::array<std::optional<Interval>, 3> about;  ///< turned about x, y or z alone [rad]; empty: it cannot
-  /// Of all orientations, those that can be reached from there; of a tool in a plane of all angles; of one that turns
-  /// in two ways, of all directions of the axis that is left.
+  /// Of all orientations, those that can be reached from there; of a tool in a plane of all angles; of one that
+  /// turns in two ways, of all directions of the axis that is left.
   std::optional<double> share;
   double share_error = 0.0;  ///< estimate
 };

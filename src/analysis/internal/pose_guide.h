@@ -48,8 +48,8 @@ class PoseGuide {
     std::optional<Posture> posture = std::nullopt;  ///< if reached
     Rates rates = {};                               ///< if inside
   };
-  /// The short way from a posture. Of a tool with fewer freedoms than components, what it neither moves along nor turns
-  /// about comes as it does.
+  /// The short way from a posture. Of a tool with fewer freedoms than components, what it neither moves along
+  /// nor turns about comes as it does.
   Step step(const Posture& from, const Pose& to) const;
   /// How far the joint that is nearest to the end of its range is from it, sliding joints in characteristic
   /// lengths; below zero beyond. `nearest` is that joint, `upper` whether its upper end.

@@ -122,6 +122,19 @@ TEST(OutcomePage, TellsWhatAChangeReallyDoes) {
   EXPECT_TRUE(done.says("+82.2 %"));
 }
 
+// Two variables may choose among the same parts.
+TEST(OutcomePage, NamesTheVariableOfAPart) {
+  const Written done(
+      "[study]\nname = \"motor\"\ndevice = \"delta\"\n[search]\nalgorithm = \"grid\"\n"
+      "[[variable]]\nname = \"which\"\nkey = \"drive.motor\"\n"
+      "parts = [\"maxon-ec-max-40-70w-48v\", \"maxon-ec-max-40-120w-48v\"]\n"
+      "[[measure]]\nname = \"force\"\nfigure = \"force_min\"\nat = \"home\"\n"
+      "[[objective]]\nname = \"strength\"\nmaximise = \"force\"\n");
+  ASSERT_EQ(done.outcome.status, 0) << done.outcome.err;
+  const std::string bar = read_text(std::filesystem::path(done.folder) / "figures" / "steps-1.svg");
+  EXPECT_NE(bar.find("which maxon-ec-max-40-70w-48v"), std::string::npos) << bar;
+}
+
 TEST(OutcomePage, TellsOfDesignsThatMeetNotAllConstraints) {
   std::string text = even_study(2);
   text.replace(text.find("max = 5"), 7, "max = 0.5");

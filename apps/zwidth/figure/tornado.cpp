@@ -12,8 +12,8 @@ namespace zwidth {
 namespace {
 
 constexpr double kRow = 26.0, kBar = 15.0, kEdge = 6.0;
-constexpr double kLetter = 7.2;        // of a wide typeface at the figure's size
-constexpr double kMostOfNames = 0.52;  // of the width
+constexpr double kLetter = 7.2;       // of a wide typeface at the figure's size
+constexpr double kMostOfNames = 0.6;  // of the width
 
 std::string shortened(const std::string& text, double room) {
   const auto most = static_cast<std::size_t>(std::max(4.0, room / kLetter + 0.01));

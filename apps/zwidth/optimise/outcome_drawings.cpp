@@ -115,10 +115,20 @@ class Drawings {
     std::vector<Point2> points;
     for (const DesignSheet& sheet : outcome_.front) points.push_back(at(sheet));
     plot.dots(points, 1);
-    if (outcome_.chosen) plot.mark(at(outcome_.front[*outcome_.chosen]), "chosen");
+    // One name for marks that coincide.
+    const DesignSheet* device = with_start ? &*outcome_.start : nullptr;
+    const auto mark = [&](const DesignSheet& sheet, std::string name, int series) {
+      const bool is_device = device != nullptr && device->objectives == sheet.objectives;
+      if (is_device) {
+        name += ", device";
+        device = nullptr;
+      }
+      plot.mark(at(sheet), name, series);
+    };
     const auto bend = outcome_.knee_row();
-    if (bend && bend != outcome_.chosen) plot.mark(at(outcome_.front[*bend]), "knee", 3);
-    if (with_start) plot.mark(at(*outcome_.start), "device", 4);
+    if (outcome_.chosen) mark(outcome_.front[*outcome_.chosen], "chosen", 2);
+    if (bend && bend != outcome_.chosen) mark(outcome_.front[*bend], "knee", 3);
+    if (device != nullptr) plot.mark(at(*device), "device", 4);
     std::string caption = fmt::format("Better is to the {} {}.", second.maximise ? "upper" : "lower",
                                       first.maximise ? "right" : "left");
     if (study_.objectives.size() > 2) {
@@ -226,9 +236,7 @@ class Drawings {
         parts = parts || !now.part.empty();
         for (const std::size_t side : {0U, 1U}) {
           if (step.value[side].empty()) continue;
-          TornadoBar one =
-              bar(now.part.empty() ? fmt::format("{} {}", now.name, step.value[side]) : step.value[side], "",
-                  step.figures[side][o]);
+          TornadoBar one = bar(fmt::format("{} {}", now.name, step.value[side]), "", step.figures[side][o]);
           if (!step.feasible[side]) one.text += " ✗";
           bars.push_back(std::move(one));
         }

@@ -55,7 +55,7 @@ std::string listed(const std::vector<std::string>& names) {
 
 // Beside the style of all pages: designs stand in columns that are narrow enough for several.
 constexpr std::string_view kStyle = R"css(
-td.r,th.r{text-align:right;white-space:normal;vertical-align:bottom;min-width:96px}
+td.r,th.r{text-align:right;white-space:normal;min-width:96px}th.r{vertical-align:bottom}
 td:first-child{min-width:150px}
 .tile .ok{color:var(--good)}.tile .no{color:var(--bad)}
 li{margin:4px 0;max-width:74ch}

@@ -14,10 +14,8 @@
 namespace zwidth::at {
 
 JacobianUnits units_of(const Situation& at) {
-  JacobianUnits units{.linear_rows = at.frame.linear()};
-  for (int i = 0; i < at.mechanism.active_count(); ++i) {
-    if (slides(at.mechanism, at.mechanism.active_joint(i))) units.sliding_joints |= 1U << i;
-  }
+  JacobianUnits units = jacobian_units(at.mechanism);
+  units.linear_rows = at.frame.linear();  // in the user's frame a plane may lie askew
   return units;
 }
 

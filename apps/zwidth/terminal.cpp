@@ -289,7 +289,7 @@ void Progress::update(double done, double total, std::string_view note) {
   if (time - last_ < pause || time - start_ < 0.3) return;
   last_ = time;
   drawn_ = true;
-  const double rate = done / (time - start_);
+  const double rate = (done - before_) / (time - start_);
   const double left = rate > 0.0 ? (total - done) / rate : 0.0;
   const double share = total > 0.0 ? std::clamp(done / total, 0.0, 1.0) : 0.0;
   const std::string rate_text =

@@ -74,6 +74,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  /// So much was done before this run: part of the share that is done, not of the rate.
+  void go_on_from(double done) { before_ = done; }
+
   /// `done` of `total` units are done; `note` says more. Cheap to call often.
   void update(double done, double total, std::string_view note = {});
 
@@ -83,6 +86,7 @@ class Progress {
   Terminal terminal_;
   double start_;
   double last_;
+  double before_ = 0.0;
   bool drawn_ = false;
 };
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <random>
 #include <thread>
+#include <utility>
 
 #include "interrupt.h"
 #include "optimise/outcome.h"
@@ -246,7 +247,12 @@ StudyOutcome run_search(const StudyModel& model, const OptimiseArguments& argume
   } else {
     designs = static_cast<double>(options.generations + 1) * options.population;
   }
-  options.progress = [&](const Generation& at) {
+  options.progress = [&, first = true](const Generation& at) mutable {
+    // The first to be heard of after a resumption is one generation on.
+    if (std::exchange(first, false) && options.resume) {
+      progress.go_on_from(static_cast<double>(
+          at.evaluations - std::int64_t{options.population} * info(options.algorithm).populations_per_step));
+    }
     progress.update(
         static_cast<double>(at.evaluations), designs,
         fmt::format("generation {}, hypervolume {}, {:.0f} % feasible", at.number,
